@@ -235,9 +235,9 @@ class Finder {
 NamedTime TimeAmong(const std::vector<std::string>& names, const CellsOfName& cells_of,
                     bool decimal_comma) {
   static const std::regex kTime(
-      "^(t|time|times|timestamps?|time[_ -]?stamp|stamp|sec|secs|seconds|clock|datetime|utc)"
-      "[ "
-      "_]*[\\[(]?(s|sec|seconds|ms|milliseconds|us|ns)?[\\])]?$|^(frame|frames|frame#|index|"
+      "^(t|time|times|timestamps?|time[_ -]?stamp|stamp|sec|secs|seconds|clock|datetime|utc|"
+      "ms|us|ns|(?:unix|epoch)(?:[ _-]?time)?)"
+      "[ _]*[\\[(]?(s|sec|seconds|ms|milliseconds|us|ns)?[\\])]?$|^(frame|frames|frame#|index|"
       "sample)$",
       std::regex::icase);
   NamedTime time;
@@ -248,7 +248,7 @@ NamedTime TimeAmong(const std::vector<std::string>& names, const CellsOfName& ce
           m[3].matched != frames)
         continue;
       time.name = name;
-      time.unit = frames ? "frame" : LowerCase(m.str(2));
+      time.unit = frames ? "frame" : LowerCase(m[2].matched || name.size() != 2 ? m.str(2) : name);
     }
   }
   if (time.name.empty() || time.unit == "frame") return time;

@@ -66,6 +66,9 @@ TEST(ColumnNames, TimesAndTheirUnits) {
   EXPECT_EQ(unit("t", "0", "0.01"), "s");
   EXPECT_EQ(unit("time_ms", "0", "0.01"), "ms");
   EXPECT_EQ(unit("Time (Seconds)", "0", "0.01"), "s");
+  EXPECT_EQ(unit("ms", "0", "0.5"), "ms");
+  EXPECT_EQ(unit("unix_ms", "1780000000000", "1780000000020"), "ms");
+  EXPECT_EQ(unit("epoch", "1780000000.00", "1780000000.02"), "s");
   EXPECT_EQ(unit("timestamp", "1000", "1016"), "ms");
   EXPECT_EQ(unit("timestamp", "1000000", "1016000"), "us");
   EXPECT_EQ(unit("timestamp [ns]", "0", "1"), "ns");
