@@ -17,6 +17,8 @@ def main(arguments):
         return importlib.import_module("." + COMMANDS[arguments[0]], __package__).main(arguments[1:]) or 0
     except Error as error:
         print(f"prehend: {error}", file=sys.stderr)
+    except OSError as error:
+        print(f"prehend: {error.filename or 'output'}: {(error.strerror or str(error)).lower()}", file=sys.stderr)
     except ModuleNotFoundError as missing:
         print(f"prehend: {arguments[0]} needs the Python module '{missing.name}': apt install python3-{missing.name}", file=sys.stderr)
     return 2

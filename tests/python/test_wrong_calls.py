@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Calls that cannot be meant: an exception with a remedy each, and afterwards everything works as before."""
+import subprocess
+import sys
 import threading
 import unittest
 import warnings
@@ -275,6 +277,15 @@ class Doubtful(unittest.TestCase):
             updated((0, {"cup": (NAN, 0, 1)}))
         with self.assertRaisesRegex(prehend.FrameError, "touches: found 'cup', wanted a pair"):
             updated((0, {}), touches=["cup"])
+
+
+class Folders(unittest.TestCase):
+    def test_one_that_is_not_there(self):
+        for words in (["benchmark", "nothere"], ["baseline", "train", "nothere"], ["dataset", "join", "nothere"]):
+            done = subprocess.run([sys.executable, "-m", "prehend", *words], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 2, (words, done.stderr))
+            self.assertRegex(done.stderr, "nothere")
+            self.assertNotIn("Traceback", done.stderr)
 
 
 if __name__ == "__main__":
