@@ -22,7 +22,8 @@ const RuleDescription& Find(const GrammarDescription& description, const std::st
 TEST(Describe, BoundsDecisionsAndHistory) {
   const GrammarDescription d = Describe(*testing::CompileLibrary("pick_and_place"));
   EXPECT_EQ(d.history_s, 10.25);  // reach_back, and half of reach_window
-  EXPECT_DOUBLE_EQ(Find(d, "grasping").latency.seconds, 0.08);
+  // Gaps of 60 ms, two sets for 20, and 10 in which a hand could begin to open.
+  EXPECT_DOUBLE_EQ(Find(d, "grasping").latency.seconds, 0.09);
   EXPECT_TRUE(Find(d, "grasping").latency.until_end_of.empty());
   EXPECT_EQ(Find(d, "reaching").latency.until_end_of, std::set<std::string>{"contact"});
   EXPECT_DOUBLE_EQ(Find(d, "picking_up").latency.seconds, 3.44);
@@ -64,7 +65,7 @@ TEST(Describe, TextListsParametersWithTheirPlaces) {
       text.find("param grip_on      = 0.5      # grammar/library/grasp.grammar:4, overridden\n"),
       std::string::npos)
       << text;
-  EXPECT_NE(text.find("event grasping(hand: Hand, object: Thing)\n    decided: at most 0.08 s "
+  EXPECT_NE(text.find("event grasping(hand: Hand, object: Thing)\n    decided: at most 0.09 s "
                       "after it has ended; evaluated"),
             std::string::npos)
       << text;
