@@ -465,8 +465,9 @@ ExitCode RunTracks(const ParsedOptions& options, const CommandContext& context) 
   if (!tracks.problem.empty()) return Refuse(context, tracks.problem);
   if (tracks.tracks.empty())
     return Complain(context, ExitCode::kNothing,
-                    "no track: nothing that the grammar looks at is in this episode; 'prehend "
-                    "episode resegment' says what it lacks");
+                    only.empty() ? "no track: nothing that the grammar looks at is in this "
+                                   "episode; 'prehend episode resegment' says what it lacks"
+                                 : "no track: '--only' leaves none");
   std::ostream& out = file ? file->stream() : context.out;
   if (as_json) {
     show::WriteJson(tracks, episode.loaded().scenario.name, GrammarName(*episode.program()), out);
