@@ -145,7 +145,7 @@ def main():
     said = run("episode", "export", folder / "take.jsonl", "--to", "mcap", "-o", folder / "out.mcap")
     assert said.returncode == 0, said.stderr
     beside = (folder / "out.mcap.map.yaml").read_text().replace("import: 1\n", "").replace("episode: ", "# ")
-    beside = beside.replace("hand: true", 'hand: true, grip: {from: "/joint_states[hand_grip]", open: 0, closed: 1}')
+    assert 'grip: {from: "/joint_states[hand_grip]", open: 0, closed: 1}' in beside, beside
     said = import_file("again.mcap", (folder / "out.mcap").read_bytes(), beside)
     assert said.returncode == 0, said.stderr
     again = [f["hands"]["hand"]["trigger"] for f in recording() if "hands" in f]
