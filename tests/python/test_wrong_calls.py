@@ -281,7 +281,8 @@ class Doubtful(unittest.TestCase):
 
 class Folders(unittest.TestCase):
     def test_one_that_is_not_there(self):
-        for words in (["benchmark", "nothere"], ["baseline", "train", "nothere"], ["dataset", "join", "nothere"]):
+        for words in (["benchmark", "nothere", "--grammar", "pick_and_place", "-o", "/nowhere/else"],
+                      ["baseline", "train", "nothere"], ["dataset", "join", "nothere", "-o", "/nowhere/else"]):
             done = subprocess.run([sys.executable, "-m", "prehend", *words], capture_output=True, text=True)
             self.assertEqual(done.returncode, 2, (words, done.stderr))
             self.assertRegex(done.stderr, "nothere")
