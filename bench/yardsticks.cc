@@ -265,6 +265,13 @@ int Run(const std::vector<std::string>& arguments) {
   const auto has = [&](const char* option) {
     return std::ranges::find(arguments, option) != arguments.end();
   };
+  for (const std::string& argument : arguments) {
+    if (argument == "--quick" || argument == "--json") continue;
+    const bool asks = argument == "--help" || argument == "-h";
+    fmt::print(asks ? stdout : stderr, "{}usage: yardsticks [--quick] [--json]   (docs/speed.md)\n",
+               asks ? "" : fmt::format("yardsticks: found '{}'\n", argument));
+    return asks ? 0 : 2;
+  }
   const std::vector<Figure> figures = Measure(has("--quick"));
   std::vector<std::vector<std::string>> rows = {
       {"what", "takes", "per", "per_second", "times_baseline", "times_on_change", "events/s",
