@@ -201,7 +201,7 @@ def compare(options):
         known = [row for row in known if options.asks in row["asks"].split()]
     names = [named(row["episode"]) for row in known]
     if not names:
-        fail(EpisodeError, f"no episode of the {options.split} split asks '{options.asks}'")
+        fail(EpisodeError, f"{folder}: no episode is of the {options.split} split" + (f" and asks '{options.asks}'" if options.asks else ""))
     path = options.labels or folder / ("held_out" if options.split == "test" else "") / f"labels_{options.split}.csv"
     labels, digest = read_labels(path, options.split, manifest)
     events = ACTIONS if options.events == "actions" else sorted({one["event"] for some in labels.values() for one in some})

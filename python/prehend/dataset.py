@@ -258,7 +258,7 @@ def write_set(output, about, rows, redrawn):
 def export(options):
     """Other forms of a set: those of the program, and HDF5 as simulators lay it out."""
     if options.to != "hdf5":
-        files = sorted(pathlib.Path(options.set).absolute().glob("*.episodes"))
+        files = sorted(pathlib.Path(options.set).absolute().glob("*.episodes")) or fail(EpisodeError, f"{options.set}: it has no file NAME.episodes")
         done = subprocess.run([program(), "episode", "export", *map(str, files), *PLAYED, "--to", options.to, "-o", options.output], check=False)
         return done.returncode
     from .datasheet import write_hdf5

@@ -97,6 +97,15 @@ class Table(unittest.TestCase):
             with self.assertRaises(EpisodeError):
                 benchmark.read_labels(path, "test", {"sha256": {"held_out/labels_test.csv": "0" * 64}})
 
+    def test_what_is_not_there_is_named(self):
+        with tempfile.TemporaryDirectory() as folder:
+            with self.assertRaisesRegex(EpisodeError, "it has no file NAME.episodes"):
+                dataset.main(["export", folder, "--to", "csv", "-o", f"{folder}/poses"])
+            pathlib.Path(folder, "manifest.json").write_text("{}", encoding="utf-8")
+            pathlib.Path(folder, "episodes.csv").write_text("episode,role,asks\n", encoding="utf-8")
+            with self.assertRaisesRegex(EpisodeError, "no episode is of the dev split$"):
+                benchmark.main([folder, "--split", "dev", "--grammar", "contact", "-o", f"{folder}/result"])
+
     def test_changes_keep_what_they_say(self):
         lines = [{"episode": "e", "ticks_per_second": 480, "entities": {"cup": {"centre_m": [0, 0.1, 0]}, "hand": {"hand": True}}}]
         lines += [{"tick": tick, "samples": {"cup": {"at_m": [0.1, 0.2, 0.3], "quat_wxyz": [0.5, 0.5, 0.5, 0.5], "w_rad_per_s": [1, 2, 3]}},
