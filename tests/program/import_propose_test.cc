@@ -28,6 +28,7 @@ std::string Proposed(const fs::path& folder, const std::string& file, const std:
   EXPECT_EQ(Prehend({"import", poses, "--propose"}).out, ReadFile(map));
   const Said check = Prehend({"import", poses, "--map", map, "--check"});
   EXPECT_EQ(check.exit_code, 0) << ReadFile(map) << check.err;
+  EXPECT_EQ(ReadFile(map).find(" \n"), std::string::npos) << ReadFile(map);
   EXPECT_NE(check.err.find("size_m is unknown, and to be filled in, of "), std::string::npos)
       << check.err;
   return ReadFile(map);

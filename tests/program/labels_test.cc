@@ -232,6 +232,14 @@ TEST_F(Labelled, AnotherClockIsAWarning) {
   EXPECT_TRUE(Has(said.err, "of 4 labels 0 are found, and 4 if all of them were moved by -1.50 s"))
       << said.err;
   EXPECT_TRUE(Has(said.err, "hint: offset_s: -1.50 in the map")) << said.err;
+  // Labels of the right clock, moved by the map: 0.6 and -0.6 are none, and no minus.
+  WriteFile(folder_ / "b.csv",
+            "begin_s,end_s,label,tier\n0.1,1.0,reach,right\n1.5,1.7,lift,right\n"
+            "1.7,3.3,carry,right\n3.3,3.4,put down,right\n");
+  WriteFile(folder_ / "moved.yaml", "offset_s: 0.6\n" + ReadFile(map_));
+  const Said moved =
+      Prehend({"score", take, "--truth", Path("b.csv"), "--map", Path("moved.yaml")});
+  EXPECT_TRUE(Has(moved.err, "hint: offset_s: 0.00 in the map")) << moved.err;
 }
 
 // Begins and ends by people are a few tenths of a second off, so a collar of 50 ms finds nothing.

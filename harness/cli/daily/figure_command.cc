@@ -291,10 +291,9 @@ ExitCode DrawDrawing(const std::string& path, const ParsedOptions& options,
 std::string WhyNot(const Kind& kind, const ParsedOptions& options) {
   if (std::string_view(kind.name) != "phases" && options.Has("--against"))
     return "--against is for phases";
-  for (const char* of_charts : {"--scenes", "--at"}) {
+  for (const char* of_charts : {"--scenes", "--at"})
     if (!kind.HasChart() && options.Has(of_charts))
       return fmt::format("{} is for charts: phases, plate, gaze", of_charts);
-  }
   if (options.Has("--sheet") &&
       (std::string_view(kind.name) != "keyframes" || options.Has("EPISODE")))
     return "--sheet paper is for keyframes, without a scenario: it has four of its own";

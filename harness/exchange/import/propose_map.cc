@@ -367,7 +367,7 @@ class MapProposer {
   }
 
   static std::string Key(const std::string& line, const std::string& why) {
-    return fmt::format("{:<24}{}\n", line, why.empty() ? "" : "# " + why);
+    return why.empty() ? line + "\n" : fmt::format("{:<24}# {}\n", line, why);
   }
 
   std::string MapText(bool commented) const {

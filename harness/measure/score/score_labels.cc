@@ -234,12 +234,13 @@ std::string ClockWarning(const std::string& grammar, const std::vector<EpisodeTo
     if (episode.failure.empty()) compared.emplace_back(episode.truth, episode.found);
   const auto clock = exchange::FindClockOffset(compared);
   if (!clock) return "";
-  const std::optional<double> offset_s = truths.offset_s();
+  std::optional<double> offset_s = truths.offset_s();
+  if (offset_s) *offset_s = std::round((*offset_s + clock->offset_s) * 100) / 100 + 0.0;  // no -0
   return fmt::format(
       "warning: {}: of {} labels {} are found, and {} if all of them were moved by {:+.2f} s; "
       "does the video begin when the tracker does?\n  hint: {}\n",
       grammar, clock->all, clock->found_now, clock->found_then, clock->offset_s,
-      offset_s ? fmt::format("offset_s: {:.2f} in the map", *offset_s + clock->offset_s)
+      offset_s ? fmt::format("offset_s: {:.2f} in the map", *offset_s)
                : fmt::format("add {:.2f} to each offset_s", clock->offset_s));
 }
 
