@@ -426,14 +426,14 @@ std::string OracleLine(const OracleComparison& compared) {
           ? ""
           : fmt::format("; {} more begin{} or end{} up to {:.1f} ms elsewhere", elsewhere,
                         elsewhere == 1 ? "s" : "", elsewhere == 1 ? "s" : "", off_ms);
-  const std::string not_recognised =
-      agreement.missing() == 0
-          ? ""
-          : fmt::format("; {} that follow are not recognised", agreement.missing());
+  std::string not_recognised;
+  if (agreement.missing() > 0)
+    not_recognised = fmt::format("; {} that follow are not recognised", agreement.missing());
   const std::string not_judged =
       compared.not_judged == 0
           ? ""
-          : fmt::format(" ({} events of other kinds not judged)", compared.not_judged);
+          : fmt::format(" ({} event{} of other kinds not judged)", compared.not_judged,
+                        compared.not_judged == 1 ? "" : "s");
   return fmt::format("{}{} of {} events follow from the definitions of docs/events.md{}{}{}",
                      kOracleLine, compared.Following(), compared.judged, boundaries, not_recognised,
                      not_judged);

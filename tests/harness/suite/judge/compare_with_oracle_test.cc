@@ -87,7 +87,7 @@ TEST_F(DerivationTest, EventsWithoutADefinitionAreCountedNotJudged) {
   run.timeline.events.push_back({.event = "stirring", .roles = {}, .interval = {10, 20}});
   const OracleComparison compared = Compared();
   EXPECT_EQ(compared.Differing(), 0);
-  EXPECT_TRUE(OracleLine(compared).ends_with("docs/events.md (1 events of other kinds not judged)"))
+  EXPECT_TRUE(OracleLine(compared).ends_with("docs/events.md (1 event of other kinds not judged)"))
       << OracleLine(compared);
 }
 
