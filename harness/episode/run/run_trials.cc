@@ -25,8 +25,12 @@ double TiltDeg(const physics::Pose& placed, const physics::Pose& now) {
 }
 
 bool Within(const std::vector<double>& wanted, double within_m, const Eigen::Vector3d& p) {
-  const auto size = static_cast<Eigen::Index>(wanted.size());
-  return (Eigen::Map<const Eigen::VectorXd>(wanted.data(), size) - p.head(size)).norm() <= within_m;
+  double squared_m2 = 0;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const double off_m = wanted[i] - p[static_cast<Eigen::Index>(i)];
+    squared_m2 += off_m * off_m;
+  }
+  return std::sqrt(squared_m2) <= within_m;
 }
 
 }  // namespace
