@@ -3,7 +3,6 @@
 // tests/physics/scene/fill_vessel_test.cc
 #include "physics/scene/fill_vessel.h"
 
-#include <cmath>
 #include <deque>
 #include <numbers>
 #include <set>

@@ -25,12 +25,9 @@ double TiltDeg(const physics::Pose& placed, const physics::Pose& now) {
 }
 
 bool Within(const std::vector<double>& wanted, double within_m, const Eigen::Vector3d& p) {
-  double squared_m2 = 0;
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    const double off_m = wanted[i] - p[static_cast<Eigen::Index>(i)];
-    squared_m2 += off_m * off_m;
-  }
-  return std::sqrt(squared_m2) <= within_m;
+  const double x = wanted[0] - p.x(), y = wanted[1] - p.y(),
+               z = wanted.size() > 2 ? wanted[2] - p.z() : 0;
+  return std::sqrt(x * x + y * y + z * z) <= within_m;
 }
 
 }  // namespace

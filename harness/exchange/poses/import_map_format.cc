@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/program/import_test.cc
-#include <cmath>
 
 #include "harness/exchange/poses/import_map.h"
 

@@ -30,7 +30,7 @@ constexpr double kCoarseUnits_per_m = 1'000;
 constexpr int kSamples_hz = 30;  ///< contacts and gaze
 constexpr int kGrainSamples_hz = 10;
 constexpr std::size_t kMostGrains = 300;  ///< of one body; more are not told apart
-constexpr int kPacking = 7;  ///< of zlib's 9: beyond it takes long for a hundredth of the size
+constexpr int kPacking = 5;  ///< of zlib's 9: more takes twice as long for 1/100 of the size
 
 std::int64_t Rounded(double value) {
   return std::isfinite(value) ? std::llround(std::clamp(value, -1e12, 1e12)) : 0;
@@ -201,15 +201,19 @@ json HandsJson(const physics::Scene& scene, const episode::RunResult& run, const
   json hands = json::array();
   for (std::size_t h = 0; h < scene.hands.size(); ++h) {
     const physics::HandModel& model = scene.hands[h].model;
+    std::vector<std::vector<Pose>> from_palm(model.links.size());
+    for (const Snapshot& frame : run.recording) {
+      const physics::HandState& hand = frame.hands[h];
+      const Pose X_PW = hand.palm.X_WB.inverse();
+      for (std::size_t l = 0; l < from_palm.size(); ++l)
+        from_palm[l].push_back(X_PW * hand.X_WL[l]);
+    }
     json links = json::array();
     for (std::size_t l = 0; l < model.links.size(); ++l) {
       const physics::HandLink& link = model.links[l];
       links.push_back(
           {{"size", Numbers({link.length_m, 2 * link.half_width_m, 2 * link.half_thickness_m})},
-           {"track", frames.Track([h, l](const Snapshot& frame) {
-              const physics::HandState& hand = frame.hands[h];
-              return hand.palm.X_WB.inverse() * hand.X_WL[l];
-            })}});
+           {"track", TrackJson(from_palm[l], frames.ticks)}});
     }
     hands.push_back(
         {{"name", scene.hands[h].name},
@@ -263,8 +267,8 @@ json LegsJson(const scenario::Scenario& scenario, const Snapshot& first) {
 const double kTrackTan2 = std::pow(std::tan(kTrackTolerance_rad / 2), 2);
 
 double Apart(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
-  const Eigen::Quaterniond turn = a * b.conjugate();
-  return turn.vec().squaredNorm() / (turn.w() * turn.w());
+  const double w2 = a.dot(b) * a.dot(b);
+  return (a.squaredNorm() * b.squaredNorm() - w2) / w2;
 }
 
 bool IsNearPlace(const Pose& pose, const Eigen::Vector3d& p_m) {
@@ -276,23 +280,28 @@ bool IsNear(const Pose& a, const Pose& b) {
 }
 
 /// Whether all poses strictly between two of them are near to what is interpolated. What does not
-/// fit shows in the middle first, and in places before rotations.
+/// fit shows in the middle first, or where the last span did not (`misfit`), and in places before
+/// rotations.
 class Span {
  public:
   Span(std::span<const Pose> poses, std::span<const std::int64_t> at, std::size_t first,
        std::size_t last)
       : poses_(poses), at_(at), first_(first), last_(last) {}
 
-  bool Fits() const {
+  bool Fits(std::size_t& misfit) const {
     const std::size_t middle = first_ + (last_ - first_) / 2;
-    if (middle > first_ && !Fits(middle)) return false;
-    for (std::size_t i = first_ + 1; i < last_; ++i)
-      if (!Fits(i)) return false;
+    if (middle > first_ && !IsNearAt(middle)) return false;
+    if (misfit > first_ && misfit < last_ && !IsNearAt(misfit)) return false;
+    for (std::size_t i = last_ - 1; i > first_; --i) {
+      if (IsNearAt(i)) continue;
+      misfit = i;
+      return false;
+    }
     return true;
   }
 
  private:
-  bool Fits(std::size_t i) const {
+  bool IsNearAt(std::size_t i) const {
     const Pose &a = poses_[first_], &b = poses_[last_];
     const double share =
         static_cast<double>(at_[i] - at_[first_]) / static_cast<double>(at_[last_] - at_[first_]);
@@ -319,11 +328,6 @@ class Span {
   double sign_ = dot_ < 0 ? -1 : 1;
   double turn_ = std::sqrt(std::max(0.0, 2 - 2 * std::abs(dot_)));
 };
-
-bool Fits(std::span<const Pose> poses, std::span<const std::int64_t> at, std::size_t first,
-          std::size_t last) {
-  return last - first < 2 || Span(poses, at, first, last).Fits();
-}
 
 // The script is played once more, over the recorded motion: what waits for something happens when
 // it did.
@@ -407,18 +411,20 @@ std::vector<std::size_t> KeysOf(std::span<const Pose> poses, std::span<const std
   std::vector<std::size_t> keys = {0};
   const auto differs = [&](const Pose& pose) { return !IsNear(pose, poses.front()); };
   if (std::ranges::none_of(poses, differs)) return keys;
+  std::size_t misfit = 0;
+  const auto fits = [&](std::size_t to) { return Span(poses, at, keys.back(), to).Fits(misfit); };
   while (keys.back() + 1 < poses.size()) {
     // As far as doubled steps lead, then between the last that fits and the first that does not.
     const std::size_t from = keys.back();
     std::size_t good = from + 1, step = 1, bad = poses.size();
-    while (good + step < poses.size() && Fits(poses, at, from, good + step)) {
+    while (good + step < poses.size() && fits(good + step)) {
       good += step;
       step *= 2;
     }
     bad = std::min(bad, good + step);
     while (bad - good > 1) {
       const std::size_t middle = good + (bad - good) / 2;
-      (Fits(poses, at, from, middle) ? good : bad) = middle;
+      (fits(middle) ? good : bad) = middle;
     }
     keys.push_back(good);
   }

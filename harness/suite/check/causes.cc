@@ -147,7 +147,7 @@ bool CanUndo(const CheckRequest& request, const CheckedRun& checked) {
 }
 
 DifferingRun NowOf(const CheckRequest& request, const CheckedRun& checked,
-                   const ScenarioVerdict& verdict) {
+                   const ScenarioVerdict& verdict, bool traced) {
   const episode::RunResult& run = checked.result;
   return {.program = request.program,
           .build = BuildText(),
@@ -155,7 +155,7 @@ DifferingRun NowOf(const CheckRequest& request, const CheckedRun& checked,
           .settings = verdict.settings,
           .options = OptionsOf(request.changes),
           .other_grammar = !request.changes.grammar.empty(),
-          .trace = TraceOf(checked.loaded.scenario.scene, run.recording),
+          .trace = traced ? TraceOf(checked.loaded.scenario.scene, run.recording) : StateTrace(),
           .ticks_per_second = static_cast<double>(run.timeline.ticks_per_second)};
 }
 
@@ -414,7 +414,7 @@ void AttributeRun(const CheckRequest& request, const CheckedRun& checked,
   const LastPasses records(request.root);
   const auto last_pass = records.Read(request.id);
   const auto trace = ReadTrace(records.TracePath(request.id));
-  const DifferingRun now = NowOf(request, checked, verdict);
+  const DifferingRun now = NowOf(request, checked, verdict, last_pass && trace);
   verdict.cause = CauseText(last_pass, trace, now, request.root);
   const auto possible = PossibleCausesOf(last_pass, trace, now, request.root);
   if (possible) verdict.cause += ChangesText(possible->changes);
@@ -432,9 +432,11 @@ void AttributeRun(const CheckRequest& request, const CheckedRun& checked,
 void AttributeFailure(const CheckRequest& request, const CheckedRun& checked,
                       ScenarioVerdict& verdict) {
   const LastPasses records(request.root);
-  const auto possible =
-      PossibleCausesOf(records.Read(request.id), ReadTrace(records.TracePath(request.id)),
-                       NowOf(request, checked, verdict), request.root);
+  const auto last_pass = records.Read(request.id);
+  if (!last_pass) return;
+  const auto trace = ReadTrace(records.TracePath(request.id));
+  const auto possible = PossibleCausesOf(
+      last_pass, trace, NowOf(request, checked, verdict, trace.has_value()), request.root);
   if (!possible) return;
   const bool is_of_grammar = !HoldsItself(checked);
   const std::string because = CauseOfFailure(*possible, [&](const auto& undone) {

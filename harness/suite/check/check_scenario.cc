@@ -367,8 +367,9 @@ void AddPictures(CheckedEpisode& checked) {
       request.replays == Replays::kAll ||
       (request.replays == Replays::kFailures && verdict.verdict != Verdict::kPassed);
   if (has_frames && wants_replay) verdict.replay = show::ReplayData(scenario, checked.run.result);
-  if (!checked.recording) verdict.steps = show::PlayedSteps(scenario, checked.run.result);
-  if (checked.recording || checked.heard || !verdict.DiffersFromGolden()) return;
+  if (checked.recording || !verdict.comparison) return;
+  verdict.steps = show::PlayedSteps(scenario, checked.run.result);
+  if (checked.heard || !verdict.DiffersFromGolden()) return;
   if (request.pictures && show::CanDrawPictures())
     verdict.drawn_differences =
         DrawDifferences(scenario, checked.run.result, *verdict.comparison, request.report_folder);

@@ -5,34 +5,37 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/quoting.h"
 
 namespace prehend::suite {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StateTrace, entities, ticks, hashes)
-
 namespace {
 
 using RecordJson = nlohmann::json;
+constexpr auto kReplace = RecordJson::error_handler_t::replace;
 
-/// Discarded when the file does not exist, is none (a pipe would be waited for) or is not JSON.
-RecordJson ReadJson(const std::filesystem::path& path) {
+/// "" when the file does not exist or is none (a pipe would be waited for).
+std::string TextOf(const std::filesystem::path& path) {
   std::error_code error;
-  const bool is_file = std::filesystem::is_regular_file(path, error);
-  std::ifstream file;
-  if (is_file) file.open(path);
-  if (!file.is_open()) return RecordJson(RecordJson::value_t::discarded);
-  return RecordJson::parse(file, nullptr, /*allow_exceptions=*/false);
+  if (!std::filesystem::is_regular_file(path, error)) return "";
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return std::move(text).str();
+}
+
+/// Discarded when it is not JSON.
+RecordJson ReadJson(const std::filesystem::path& path) {
+  return RecordJson::parse(TextOf(path), nullptr, /*allow_exceptions=*/false);
 }
 
 /// A name that is not UTF-8 is written with U+FFFD; no such file is unchanged next time.
-std::string AsText(const RecordJson& json) {
-  return json.dump(1, ' ', false, RecordJson::error_handler_t::replace) + "\n";
-}
+std::string AsText(const RecordJson& json) { return json.dump(1, ' ', false, kReplace) + "\n"; }
 
 constexpr std::size_t kMaxTracedTicks = 20'000;
 
@@ -42,11 +45,6 @@ std::uint32_t HashOf(const State& state) {
   physics::StateHash hash;
   hash.Add(state);
   return static_cast<std::uint32_t>(hash.value());
-}
-
-void AddHashes(const physics::Snapshot& snapshot, std::vector<std::uint32_t>& hashes) {
-  for (const physics::BodyState& body : snapshot.bodies) hashes.push_back(HashOf(body));
-  for (const physics::HandState& hand : snapshot.hands) hashes.push_back(HashOf(hand));
 }
 
 std::int64_t WidestGap(const StateTrace& trace) {
@@ -120,8 +118,13 @@ StateTrace TraceOf(const physics::Scene& scene, std::span<const physics::Snapsho
   for (const physics::Hand& hand : scene.hands) trace.entities.push_back(hand.name);
   const std::size_t step = recording.size() / kMaxTracedTicks + 1;
   for (std::size_t i = 0; i < recording.size(); i += step) {
+    // What has not moved since the tick before has the hash that it had.
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+      trace.hashes.push_back(i > 0 && !recording[i].MayHaveMoved(b, trace.ticks.back())
+                                 ? trace.hashes[trace.hashes.size() - trace.entities.size()]
+                                 : HashOf(recording[i].bodies[b]));
+    for (const physics::HandState& hand : recording[i].hands) trace.hashes.push_back(HashOf(hand));
     trace.ticks.push_back(recording[i].tick);
-    AddHashes(recording[i], trace.hashes);
   }
   return trace;
 }
@@ -149,24 +152,33 @@ std::optional<Divergence> FirstDivergence(const StateTrace& a, const StateTrace&
   return FirstTickOfTheLonger(a, b);
 }
 
+// A line of JSON, the names; then the bytes of all ticks and of all hashes.
 std::string WriteTrace(const std::filesystem::path& path, const StateTrace& trace) {
-  const std::string entities =
-      RecordJson(trace.entities).dump(-1, ' ', false, RecordJson::error_handler_t::replace);
-  return WriteTextFile(path,
-                       fmt::format(R"({{"entities":{},"hashes":[{}],"ticks":[{}]}})", entities,
-                                   fmt::join(trace.hashes, ","), fmt::join(trace.ticks, ",")));
+  std::string text = RecordJson(trace.entities).dump(-1, ' ', false, kReplace) + "\n";
+  const auto add = [&](const auto& list) {
+    text.append(reinterpret_cast<const char*>(list.data()), list.size() * sizeof(list[0]));
+  };
+  add(trace.ticks);
+  add(trace.hashes);
+  return WriteTextFile(path, text);
 }
 
 std::optional<StateTrace> ReadTrace(const std::filesystem::path& path) {
-  const RecordJson json = ReadJson(path);
-  if (json.is_discarded()) return std::nullopt;
+  const std::string text = TextOf(path);
+  const std::size_t head = text.find('\n') + 1, rest = text.size() - head;
+  StateTrace trace;
   try {
-    auto trace = json.get<StateTrace>();
-    const bool whole = trace.hashes.size() == trace.entities.size() * trace.ticks.size();
-    return whole ? std::optional(std::move(trace)) : std::nullopt;
+    RecordJson::parse(text.substr(0, head)).get_to(trace.entities);
   } catch (const RecordJson::exception&) {
     return std::nullopt;
   }
+  const std::size_t of_tick = 8 + 4 * trace.entities.size(), ticks = rest / of_tick;
+  if (trace.entities.empty() || rest == 0 || rest % of_tick != 0) return std::nullopt;
+  trace.ticks.resize(ticks);
+  trace.hashes.resize(ticks * trace.entities.size());
+  std::memcpy(trace.ticks.data(), text.data() + head, 8 * ticks);
+  std::memcpy(trace.hashes.data(), text.data() + head + 8 * ticks, rest - 8 * ticks);
+  return trace;
 }
 
 std::vector<std::string> OptionsOf(const episode::GrammarChoice& changes) {

@@ -78,9 +78,9 @@ class Suite {
   /// Returns the others, and those of a process that did not end: each is judged alone.
   std::vector<Turn> JudgeTogether(const std::vector<Turn>& turns, const Keep& keep,
                                   Interrupt* interrupt) {
-    constexpr std::size_t kMost = 16, kLeast = 4;
+    constexpr std::size_t kMost = 32, kLeast = 4;
     const std::size_t at_once = std::min(
-        kMost, turns.size() / (4 * static_cast<std::size_t>(std::max(1, request_.limits.jobs))));
+        kMost, turns.size() / (2 * static_cast<std::size_t>(std::max(1, request_.limits.jobs))));
     const auto is_kept = [&](const Turn& turn) {
       const episode::ScenarioFile& one = scenarios_[turn.scenario];
       return one.episode && request_.repeat == 1;

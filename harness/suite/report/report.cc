@@ -39,13 +39,10 @@ void AddSummary(pugi::xml_node body, const Tally& tally, const Sides& sides) {
   add(tally.passed, sides.empty() ? "passed" : "agree", "passed");
   AddText(line, ", ");
   add(tally.failed, sides.empty() ? "failed" : "differ", tally.failed > 0 ? "failed" : "soft");
-  if (tally.pending > 0) {
-    AddText(line, ", ");
-    add(tally.pending, "pending", "pending");
-  }
-  if (tally.unchanged > 0) {
-    AddText(line, ", ");
-    add(tally.unchanged, "unchanged", "unchanged");
+  for (const auto& [count, name] :
+       {std::pair{tally.pending, "pending"}, {tally.unchanged, "unchanged"}}) {
+    if (count > 0) AddText(line, ", ");
+    if (count > 0) add(count, name, name);
   }
   const pugi::xml_node bar =
       AddElement(body, "div", {{"class", "glance"}, {"aria-hidden", "true"}});
@@ -499,21 +496,10 @@ void Put(std::string& page, std::string_view place, std::string_view text) {
 
 /// What needs a person first; in one kind, as they were.
 std::vector<ScenarioVerdict> WorstFirst(std::vector<ScenarioVerdict> verdicts) {
-  const auto rank = [](const ScenarioVerdict& verdict) {
-    switch (verdict.verdict) {
-      case Verdict::kFailed:
-        return 0;
-      case Verdict::kFlaky:
-        return 1;
-      case Verdict::kPending:
-        return 2;
-      case Verdict::kPassed:
-      case Verdict::kUnchanged:
-        break;
-    }
-    return 3;
-  };
-  std::ranges::stable_sort(verdicts, {}, rank);
+  constexpr Verdict kWorst[] = {Verdict::kFailed, Verdict::kFlaky, Verdict::kPending};
+  std::ranges::stable_sort(verdicts, {}, [&](const ScenarioVerdict& verdict) {
+    return std::ranges::find(kWorst, verdict.verdict) - kWorst;
+  });
   return verdicts;
 }
 

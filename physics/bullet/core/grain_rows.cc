@@ -6,8 +6,6 @@
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 
 #include <algorithm>
-#include <cmath>
-#include <utility>
 
 namespace prehend::physics {
 namespace {

@@ -3,8 +3,6 @@
 // Tested by tests/physics/bullet/single_bodies_test.cc
 #include <LinearMath/btScalar.h>
 
-#include <cstddef>
-
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 
 #include <immintrin.h>

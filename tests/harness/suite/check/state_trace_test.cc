@@ -45,6 +45,20 @@ TEST(StateTrace, FindsWhereTwoRunsPart) {
   EXPECT_EQ(shorter->entity, "");
 }
 
+TEST(StateTrace, WhatDidNotMoveIsAsItWas) {
+  auto recording = Recording(10);
+  const StateTrace trace = TraceOf(TwoBodies(), recording);
+  for (physics::Snapshot& snapshot : recording)
+    snapshot.moved_tick = {snapshot.tick, snapshot.tick < 6 ? 0 : 6};
+  EXPECT_EQ(TraceOf(TwoBodies(), recording), trace);
+
+  // Only what may have moved is looked at.
+  recording[2].bodies[1].X_WB.p_m.y() = 1;
+  EXPECT_EQ(TraceOf(TwoBodies(), recording), trace);
+  recording[3].bodies[1].X_WB.p_m.y() = 1;
+  EXPECT_NE(TraceOf(TwoBodies(), recording), trace);
+}
+
 TEST(StateTrace, LongRecordingsAreThinned) {
   const StateTrace trace = TraceOf(TwoBodies(), Recording(50'001));
   EXPECT_LE(trace.ticks.size(), 20'000u);
@@ -61,7 +75,11 @@ TEST(StateTrace, ComesBackFromItsFile) {
   EXPECT_EQ(ReadTrace(path), trace);
   for (const char* damaged :
        {"", "{}", "[1]", R"({"entities": ["cup"], "ticks": [0], "hashes": []})",
-        R"({"entities": ["cup"], "ticks": ["zz"], "hashes": [1]})"}) {
+        R"({"entities": ["cup"], "ticks": ["zz"], "hashes": [1]})",
+        R"({"entities":["cup"],"hashes":[1],"ticks":[0)",
+        R"({"entities":["cup"],"hashes":[1,x],"ticks":[0,1]})",
+        R"({"entities":["cup"],"hashes":[1,4294967296],"ticks":[0,1]})",
+        R"({"entities":["cup","hashes":[1],"ticks":[0]})", R"(],"ticks":[]})"}) {
     ASSERT_EQ(WriteTextFile(path, damaged), "");
     EXPECT_FALSE(ReadTrace(path)) << damaged;
   }
