@@ -46,4 +46,12 @@ class Simulation {
   std::unique_ptr<State> state_;
 };
 
+/// Once per run: indices are those of bodies, hands and links that exist, numbers are finite,
+/// quaternions and axes have unit length, and lists have one element for each link or style.
+void CheckScene(const Scene& scene);
+
+/// Whether a snapshot has one state for each body, joint, hand and link, and its contacts and gazes
+/// are of these. For PREHEND_DCHECK: it costs as much as the contacts are many.
+bool IsOf(const Scene& scene, const Snapshot& snapshot);
+
 }  // namespace prehend::physics

@@ -13,7 +13,6 @@
 
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/arrays/read_array_poses.h"
-#include "harness/exchange/arrays/row_poses.h"
 #include "harness/exchange/poses/pose_file.h"
 #include "harness/exchange/poses/table_layout.h"
 #include "harness/scenario/motion/read_bvh.h"

@@ -14,7 +14,6 @@
 
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/arrays/read_array_poses.h"
-#include "harness/exchange/arrays/row_poses.h"
 #include "harness/exchange/hdf5/hdf5_file.h"
 #include "harness/exchange/messages/log_file.h"
 

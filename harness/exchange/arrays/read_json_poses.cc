@@ -10,7 +10,6 @@
 #include "grammar/base/diagnostic.h"
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/arrays/read_array_poses.h"
-#include "harness/exchange/arrays/row_poses.h"
 
 namespace prehend::exchange {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/exchange/arrays/row_poses.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 
 #include "grammar/base/diagnostic.h"
 #include "harness/base/base/text_file.h"
+#include "harness/exchange/arrays/read_array_poses.h"
 #include "harness/exchange/hdf5/hdf5_file.h"
 
 namespace prehend::exchange {

@@ -13,7 +13,6 @@
 #include "grammar/base/frame.h"
 #include "harness/base/yaml/diagnostic_list.h"
 #include "harness/exchange/arrays/read_array_poses.h"
-#include "harness/exchange/arrays/row_poses.h"
 #include "harness/exchange/doubts/plausibility.h"
 #include "harness/exchange/doubts/rest_poses.h"
 #include "harness/exchange/import/track.h"

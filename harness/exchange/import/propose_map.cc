@@ -18,7 +18,6 @@
 
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/arrays/read_array_poses.h"
-#include "harness/exchange/arrays/row_poses.h"
 #include "harness/exchange/cells/column_names.h"
 #include "harness/exchange/doubts/plausibility.h"
 #include "harness/exchange/import/import_poses.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "physics/scene/check_scene.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 #include <limits>
+
+#include "physics/simulation.h"
 
 namespace prehend::physics {
 namespace {

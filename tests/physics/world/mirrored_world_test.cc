@@ -8,7 +8,6 @@
 
 #include "physics/bullet/world.h"
 #include "physics/scene/compounds.h"
-#include "physics/scene/mirror_image.h"
 #include "physics/world/contact_hold.h"
 #include "tests/physics/tabletop.h"
 

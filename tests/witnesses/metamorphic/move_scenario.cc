@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "harness/scenario/transform/transform.h"
-#include "physics/scene/mirror_image.h"
+#include "physics/world/mirrored_world.h"
 
 namespace prehend::witnesses {
 namespace {
