@@ -372,6 +372,17 @@ TEST_F(Takes, LayoutsOfOtherProgramsAreScored) {
   }
   EXPECT_EQ(f1("f.csv", frames, "rate_hz: 10\n"), 1);
   EXPECT_EQ(f1("f.txt", lines, "rate_hz: 10\n"), 1);
+  const auto rated = [&](const std::string& rate) {
+    return Score({take, "--truth", Path("f.txt"), "--map",
+                  Write("r.yaml", rate + "labels: {near: {event: near}, SIL: ignore}\n")})
+        .err;
+  };
+  EXPECT_EQ(
+      Has(rated("rate_hz: 20\n"),
+          "f.txt: its lines last 2.50 s at 20 per second, the recording 5.00 s\n  hint: if it "
+          "has a line for each frame of the video: rate_hz: 10 in the map\n"),
+      "");
+  EXPECT_EQ(rated("rate_hz: 10.5\n").find("its lines last"), std::string::npos);
   EXPECT_EQ(f1("d.csv",
                "begin,end,label\n2026-10-25T02:00:01.0,2026-10-25T02:00:02.0,near\n"
                "2026-10-25T02:00:03.0,2026-10-25T02:00:04.0,near\n",

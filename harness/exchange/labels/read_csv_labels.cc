@@ -471,6 +471,8 @@ Diagnostics ReadFrameLabels(LabelFile& file, const CsvReading& how) {
                         : fmt::format("it has {} lines, and the recording {} frames", lines.size(),
                                       how.frames_s.size() - 1),
                     "how many has the video per second? In the map: rate_hz: 30")};
+  if (!by_frame) file.rate_hz = how.rate_hz;
+  if (!by_frame) file.frames_s = static_cast<double>(lines.size()) / how.rate_hz;
   const auto at_s = [&](std::size_t line) {
     return by_frame ? how.frames_s[line] : static_cast<double>(line) / how.rate_hz;
   };

@@ -52,11 +52,12 @@ struct CsvReading {
 
 struct LabelFile {
   std::string file;
-  std::string text;           ///< of the file as UTF-8, for messages
-  std::vector<Label> labels;  ///< without empty ones, in the order of the file
-  std::size_t backward = 0;   ///< labels that end before they begin, which were left out
-  std::vector<Label> empty;   ///< those without text, which were left out
-  bool has_header = true;     ///< without labels, it says that nothing happened
+  std::string text;                  ///< of the file as UTF-8, for messages
+  std::vector<Label> labels;         ///< without empty ones, in the order of the file
+  std::size_t backward = 0;          ///< labels that end before they begin, which were left out
+  std::vector<Label> empty;          ///< those without text, which were left out
+  bool has_header = true;            ///< without labels, it says that nothing happened
+  double frames_s = 0, rate_hz = 0;  ///< of lines for frames at the map's rate: how long they last
   /// Of a table: keys of rows with neither times nor a label, which say that of a take.
   std::set<std::vector<std::string>> nothing_in;
   grammar::Diagnostics warnings;

@@ -128,18 +128,22 @@ Warned ScoreJson(const Grammar& grammar, const std::vector<Compared>& episodes,
   const auto truths =
       Unwrap(exchange::ReadTruths(episode::TakesOf(names), files, map, *grammar.program()));
   std::vector<measure::EpisodeToScore> all;
+  std::string doubts;
   for (const Compared& one : episodes) {
     const grammar::EntityTable table = one.episode.entities();
     const std::size_t take = all.size();
     measure::EpisodeToScore& scored = all.emplace_back();
     scored.ticks = one.end;
     scored.truth = Unwrap(truths.Truth(take, table.entities, table.ticks_per_second, scored.ticks));
+    doubts += measure::RateWarning(
+        truths, take, static_cast<double>(one.end) / static_cast<double>(table.ticks_per_second));
     measure::AddFound(one.found, take, truths, collar, scored);
   }
   const measure::Score score = measure::ScoreOf(
       "", all, collar, collar_s ? measure::Collars() : measure::Collars(truths.collars_s()));
-  return {measure::ScoresJson({score}, collar)["grammars"][0].dump(),
-          exchange::WarningsOf(truths) + measure::ClockWarning(grammar.name(), all, truths)};
+  return {
+      measure::ScoresJson({score}, collar)["grammars"][0].dump(),
+      exchange::WarningsOf(truths) + doubts + measure::ClockWarning(grammar.name(), all, truths)};
 }
 
 Warned MarginsCsv(const std::vector<std::string>& files, const Grammar& grammar,

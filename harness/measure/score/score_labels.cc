@@ -47,6 +47,9 @@ Result<EpisodeToScore> Labelled(episode::Episode& episode, const episode::Take& 
                         .offset_s = truths.rows(index).offset_s};
 }
 
+/// Labels by frame that last less than this share of their take are doubted.
+constexpr double kFramesCover = 0.9;
+
 /// Without a recording there is no rate.
 constexpr grammar::Tick kTicksPerSecond = 10'000;
 
@@ -163,10 +166,11 @@ class LabelScorer {
       PREHEND_TRY(EpisodeToScore labelled,
                   Labelled(*episode, request_.takes[group.takes[i]], i, truths));
       true_events += labelled.truth.events.size();
-      if (is_first)
-        scores_.counted.cut +=
-            truths.Cut(i, static_cast<double>(labelled.ticks) /
-                              static_cast<double>(episode->entities().ticks_per_second));
+      const double take_s = static_cast<double>(labelled.ticks) /
+                            static_cast<double>(episode->entities().ticks_per_second);
+      if (is_first) scores_.counted.cut += truths.Cut(i, take_s);
+      if (const std::string doubt = RateWarning(truths, i, take_s); said_.insert(doubt).second)
+        warnings_ += doubt;
       PREHEND_TRY(const grammar::Timeline found,
                   foreign ? foreign->Find(request_.takes, group.takes[i], Watched(*episode),
                                           *compiled.program, truths.compared(), labelled)
@@ -226,6 +230,17 @@ class LabelScorer {
 };
 
 }  // namespace
+
+std::string RateWarning(const exchange::LabelReading& truths, std::size_t take, double take_s) {
+  const std::size_t at = truths.files().empty() ? 0 : truths.rows(take).file;
+  if (at >= truths.files().size()) return "";
+  const exchange::LabelFile& file = truths.files()[at];
+  if (file.frames_s == 0 || file.frames_s > kFramesCover * take_s) return "";
+  return fmt::format(
+      "warning: {}: its lines last {:.2f} s at {:g} per second, the recording {:.2f} s\n"
+      "  hint: if it has a line for each frame of the video: rate_hz: {:.3g} in the map\n",
+      file.file, file.frames_s, file.rate_hz, take_s, file.frames_s * file.rate_hz / take_s);
+}
 
 std::string ClockWarning(const std::string& grammar, const std::vector<EpisodeToScore>& episodes,
                          const exchange::LabelReading& truths) {
