@@ -283,6 +283,7 @@ double Recording::Seconds(int from_frame, int to_frame) const {
 }
 
 double Recording::Lasts_s(Span span) const {
+  if (span.empty()) return 0;  // at the end of the recording there is no tick to ask for
   const grammar::Tick end = span.end < size() ? ticks[span.end] : ticks.back() + 1;
   return static_cast<double>(end - ticks[span.begin]) / scene.world.rate_hz;
 }

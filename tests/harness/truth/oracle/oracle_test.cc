@@ -209,6 +209,18 @@ TEST(OracleSupport, IsNotAHand) {
     EXPECT_NE(event.event, "supported_by");
 }
 
+// A bar that a finger pulls at, and nothing grips, is none: not at the end of the recording either.
+TEST(OracleGrasp, IsNotFoundOfOneFingerThatPullsToTheEnd) {
+  Stage stage;
+  stage.Play(0.5);
+  stage.trigger = 1;
+  stage.contacts = {{Stage::BodySide(stage.cup), Stage::HandSide(0, 0), Eigen::Vector3d::UnitX(),
+                     Eigen::Vector3d::Zero(), 0.1}};
+  stage.Play(0.5);
+  EXPECT_EQ(Of("contact(cup, hand)", stage.Truth()).size(), 1u);
+  EXPECT_TRUE(Of("grasping(hand, cup)", stage.Truth()).empty());
+}
+
 TEST(OracleGrasp, NeedsTwoSensorSetsAndACommand) {
   Stage stage;
   stage.sets = 2;
