@@ -70,6 +70,22 @@ TEST_F(GoldenOfARecording, IsReviewedAcceptedAndChecked) {
   EXPECT_EQ(ReadFile(golden_), before);
 }
 
+// As of a scenario, also where the events are those of the golden.
+TEST_F(GoldenOfARecording, BreaksALawOfItsGrammarOrKeepsIt) {
+  const fs::path grammar = folder_ / "lawful.grammar";
+  const std::string rules =
+      "grammar lawful\nuse pick_and_place_from_motion\n"
+      "law kept(hand: Hand, object: Movable) grasping(hand, object) lies inside ";
+  const std::vector<std::string> options = {"--grammar", grammar.string()};
+  WriteFile(grammar, rules + "reaching(hand, object)\n");
+  ASSERT_EQ(Accept({"--grammar", grammar.string(), "--reason", "seen"}).exit_code, 0);
+  const Said broken = Check(options);
+  EXPECT_EQ(broken.exit_code, 1) << broken.out;
+  EXPECT_TRUE(Has(broken.out, "a law of the grammar is violated, kept")) << broken.out;
+  WriteFile(grammar, rules + "contact(hand, object)\n");
+  EXPECT_EQ(Check(options).exit_code, 0);
+}
+
 TEST_F(GoldenOfARecording, ADifferenceIsShownWithItsCauseAndKeepsWhatPeopleWrote) {
   ASSERT_EQ(Accept({"--reason", "seen"}).exit_code, 0);
   const Said changed = Check({"--set", "reach_radius=10cm"});

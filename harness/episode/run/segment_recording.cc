@@ -160,6 +160,7 @@ Result<SegmentedRecording> SegmentRecording(Recording& recording,
   const grammar::EntityTable& entities = recording.header.entity_table;
   SegmentedRecording segmented{.name = recording.header.episode,
                                .program = program,
+                               .entity_table = entities,
                                .end = recording.end_tick,
                                .says_its_end = recording.says_its_end,
                                .warnings = Warnings(*program, entities)};

@@ -40,6 +40,7 @@ MissingFacts FindMissingFacts(Recording& episode, const grammar::Program& progra
 struct SegmentedRecording {
   std::string name;  ///< of the episode
   std::shared_ptr<const grammar::Program> program;
+  grammar::EntityTable entity_table;
   grammar::Timeline timeline;
   grammar::Tick end = 1;          ///< the first tick after the episode
   grammar::Tick frame_ticks = 1;  ///< from one frame to the next: the median

@@ -153,6 +153,7 @@ Findings GoldenBesideRecording(CheckedEpisode& checked) {
     findings.back().details += OtherGrammarText(*judged);
   }
   if (!findings.empty()) findings.back().details += judged->segmented.missing.warnings;
+  std::ranges::move(JudgeLaws(judged->segmented), std::back_inserter(findings));
   if (verdict.has_golden)
     verdict.attributions =
         AttributeDifferences(judged->comparison, {.other_changes = OptionsOf(request.changes)},

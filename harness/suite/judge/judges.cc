@@ -340,18 +340,30 @@ Findings JudgeInvariants(const CheckedRun& checked) {
   return ViolationFinding("invariant violated", std::move(details));
 }
 
-Findings JudgeLaws(const CheckedRun& checked) {
-  const grammar::Timeline& timeline = checked.result.timeline;
+namespace {
+
+Findings LawFindings(const grammar::Program& program, const grammar::EntityTable& entities,
+                     const grammar::Timeline& timeline) {
   std::string details;
   std::set<std::string> names;
-  for (const grammar::LawViolation& violation : CheckLaws(
-           *checked.loaded.program, episode::MakeEntityTable(checked.loaded.scenario), timeline)) {
+  for (const grammar::LawViolation& violation : CheckLaws(program, entities, timeline)) {
     details += "violated: " + Text(violation, timeline.ticks_per_second) + "\n";
     names.insert(violation.law->name);
   }
   return ViolationFinding(
       fmt::format("a law of the grammar is violated, {}", fmt::join(names, ", ")),
       std::move(details));
+}
+
+}  // namespace
+
+Findings JudgeLaws(const CheckedRun& checked) {
+  return LawFindings(*checked.loaded.program, episode::MakeEntityTable(checked.loaded.scenario),
+                     checked.result.timeline);
+}
+
+Findings JudgeLaws(const episode::SegmentedRecording& recording) {
+  return LawFindings(*recording.program, recording.entity_table, recording.timeline);
 }
 
 std::vector<Clause> ClausesOf(std::string_view grammar) {

@@ -232,6 +232,7 @@ std::string Text(const grammar::LawViolation& violation, grammar::Tick ticks_per
 Findings JudgeInvariants(const CheckedRun& checked);
 
 Findings JudgeLaws(const CheckedRun& checked);
+Findings JudgeLaws(const episode::SegmentedRecording& recording);
 
 // A scenario after metamorphic transforms: the same events, boundaries within the tolerances of its
 // golden. Tested by tests/harness/suite/judge/ensemble_test.cc and
