@@ -118,6 +118,12 @@ def suite(folder):
     said = run("episode", "merge", *part[1:], folder / "again.episodes", "-o", folder / "twice.episodes")
     assert f"{len(episodes(part[1]))} were there twice" in said.stdout
     assert (folder / "twice.episodes").read_bytes() == all_.read_bytes()
+    # Again over what it made, but not over episodes that it would lose.
+    run("episode", "merge", *part[1:], "-o", folder / "twice.episodes")
+    said = run("episode", "merge", part[1], "-o", folder / "twice.episodes", code=2)
+    lost = len(episodes(all_)) - len(episodes(part[1]))
+    assert f"has {lost} of {len(episodes(all_))} episodes that would be lost" in said.stderr, said.stderr
+    assert (folder / "twice.episodes").read_bytes() == all_.read_bytes()
     not_the_same(part, folder)
     hostile(part, folder)
 
@@ -183,9 +189,9 @@ def trials(folder):
         killed(words(file.name, "--shard", f"{i}/2"), file)
         said = json.loads(run(*words(file.name, "--shard", f"{i}/2")).stdout)
         assert said["results"] == whole["results"][i - 1::2], said
-    run("episode", "merge", folder / "whole.episodes", "-o", folder / "one.episodes")
-    run("episode", "merge", *parts, "-o", folder / "all.episodes")
-    assert (folder / "one.episodes").read_bytes() == (folder / "all.episodes").read_bytes()
+    run("episode", "merge", folder / "whole.episodes", "-o", folder / "one-trials.episodes")
+    run("episode", "merge", *parts, "-o", folder / "all-trials.episodes")
+    assert (folder / "one-trials.episodes").read_bytes() == (folder / "all-trials.episodes").read_bytes()
     missing = run("episode", "merge", parts[1], "-o", folder / "half.episodes", code=3).stderr
     assert "part 1 of 2 is missing, with 4 episodes: trials/gripper_places_a_box, trial 1, " in missing, missing
 

@@ -7,11 +7,13 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/content_hash.h"
 #include "harness/base/base/text_file.h"
 #include "harness/episode/episodes/database.h"
+#include "harness/episode/episodes/episode_file.h"
 #include "harness/episode/episodes/plan.h"
 #include "harness/episode/episodes/record_episode.h"
 
@@ -273,6 +275,25 @@ class Merger {
   std::map<std::string, std::int64_t> tasks_;
 };
 
+/// Nothing may be lost of a file that the new one replaces.
+Result<void> KeepsAllOf(const std::string& old, const std::string& merged) {
+  std::error_code error;
+  if (!fs::exists(old, error)) return {};
+  PREHEND_TRY(const EpisodeFile before, EpisodeFile::Open(old));
+  PREHEND_TRY(const EpisodeFile after, EpisodeFile::Open(merged));
+  std::set<std::string> kept;
+  for (const EpisodeRow& row : after.episodes()) kept.insert(row.uuid);
+  const auto lost = std::ranges::count_if(
+      before.episodes(), [&](const EpisodeRow& row) { return !kept.contains(row.uuid); });
+  if (lost == 0) return {};
+  return tl::unexpected(grammar::Diagnostics{
+      {.file = old,
+       .message = fmt::format("exists, and has {} of {} episodes that would be lost: none of the "
+                              "merged files has them",
+                              lost, before.episodes().size()),
+       .hint = "merge it with them, name another file, or remove it first"}});
+}
+
 }  // namespace
 
 Result<Merged> MergeEpisodes(std::span<const std::string> files, const std::string& output) {
@@ -289,6 +310,10 @@ Result<Merged> MergeEpisodes(std::span<const std::string> files, const std::stri
     transaction.Commit();
     return done;
   });
+  if (merged) {
+    if (Result<void> kept = KeepsAllOf(target, unfinished); !kept)
+      merged = tl::unexpected(std::move(kept.error()));
+  }
   if (merged) fs::rename(unfinished, target, error);
   if (merged && error)
     merged = tl::unexpected(
