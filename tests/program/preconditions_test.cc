@@ -82,6 +82,40 @@ TEST_F(Preconditions, AnOutputReplacesNoInput) {
       << "what was written before may be written again";
 }
 
+TEST_F(Preconditions, NorAnotherOutput) {
+  Accept();
+  const std::string one = (root_ / "one.episodes").string(), page = (root_ / "page").string();
+  for (const std::string& command :
+       {"check --no-pictures --record " + one + " --junit " + (root_ / "./one.episodes").string(),
+        "check --no-pictures --report " + page + " --junit " + page + "/index.html"}) {
+    const Said said = Do(command);
+    EXPECT_EQ(said.exit_code, 2) << command;
+    EXPECT_NE(said.err.find(" writes; name another file"), std::string::npos) << said.err;
+    EXPECT_FALSE(fs::exists(one) || fs::exists(page)) << command;
+  }
+  EXPECT_EQ(
+      Do("check --no-pictures --report " + page + " --junit " + page + "/junit.xml").exit_code, 0);
+}
+
+// Nobody writes into the pipe, and the device never ends.
+TEST_F(Preconditions, APipeOrADeviceIsNoRecording) {
+  const fs::path pipe = root_ / "pipe.jsonl", device = root_ / "device.jsonl",
+                 poses = root_ / "poses.csv", map = root_ / "map.yaml";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  ASSERT_EQ(mkfifo(poses.c_str(), 0600), 0);
+  fs::create_symlink("/dev/zero", device);
+  WriteFile(map, ReadFile(PREHEND_SOURCE_DIR "/docs/motion_capture/bodies.yaml"));
+  for (const std::string& command :
+       {"episode resegment " + pipe.string(), "episode resegment " + device.string(),
+        "explain " + pipe.string(), "explain " + device.string(),
+        "import " + poses.string() + " --check --map " + map.string(),
+        "import " + poses.string() + " --propose"}) {
+    const Said said = DoAfter("ulimit -t 10", command + " --time-limit-s 20");
+    EXPECT_EQ(said.exit_code, 2) << command << said.err;
+    EXPECT_NE(said.err.find("is not a regular file"), std::string::npos) << command << said.err;
+  }
+}
+
 TEST_F(Preconditions, NorAFolderOfTheProject) {
   Accept();
   const std::string file = (root_ / "a.episodes").string(), kb = (root_ / "kb").string();

@@ -272,6 +272,10 @@ TEST_F(Takes, FaultyFilesAreNamed) {
                 "which labels? --truth FILE or FOLDER, or 'labels' in the file of takes"),
             "");
   EXPECT_EQ(Has(problem("takes:\n  - {recording: none.jsonl, labels: a.csv}\n"), "none.jsonl"), "");
+  for (const char* itself : {"takes.yaml", ".", "./."})
+    EXPECT_EQ(Has(problem(std::string("takes:\n  - {recording: ") + itself + "}\n"),
+                  "is a file of takes itself"),
+              "");
 }
 
 TEST_F(Takes, WhatIsCutOrOutsideIsSaid) {

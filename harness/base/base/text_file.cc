@@ -224,6 +224,11 @@ Diagnostics CheckText(const std::string& file, std::string_view text) {
   return CheckLines(file, text, 1);
 }
 
+std::ifstream OpenRegular(const std::string& path) {
+  std::error_code error;
+  return std::ifstream(std::filesystem::is_regular_file(path, error) ? path : "", std::ios::binary);
+}
+
 Diagnostics ReadTextBlocks(const std::string& path, std::uintmax_t most_bytes,
                            const TakeBlock& take) {
   constexpr std::size_t kBlockBytes = 1 << 20;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <fstream>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -28,6 +29,10 @@ using TakeBlock = std::function<void(std::string block, bool is_last)>;
 /// The same, block by block: what is wrong with the text is known where it comes.
 grammar::Diagnostics ReadTextBlocks(const std::string& path, std::uintmax_t most_bytes,
                                     const TakeBlock& take);
+
+/// To look into a file. What is no regular file has failed: a pipe would be waited for, a device
+/// may never end.
+std::ifstream OpenRegular(const std::string& path);
 
 /// Reports a text that is empty, is not UTF-8, or holds control characters (a binary file): those
 /// of ASCII and U+0080 to U+009F, which terminals obey; what turns the direction of writing (U+202A

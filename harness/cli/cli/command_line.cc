@@ -102,11 +102,16 @@ std::optional<Refusal> RefuseOutputsThatAreInputs(const std::string& root, const
         if (IsBelow(file, fs::path(root) / folder))
           return RefuseToWrite(output, file, fmt::format("a file of the project's {}/", folder));
       }
-      for (const Option& input : command.options) {
-        if (input.is_output) continue;
-        for (const std::string& other : options.All(input.name)) {
-          if (fs::equivalent(file, other, error))
+      for (const Option& one : command.options) {
+        for (const std::string& other : options.All(one.name)) {
+          if (!one.is_output && fs::equivalent(file, other, error))
             return RefuseToWrite(output, file, "what is read");
+          const auto is = [&](const fs::path& path) {
+            return fs::weakly_canonical(file, error) == fs::weakly_canonical(path, error);
+          };
+          if (one.is_output && one.name != output.name &&
+              (is(other) || is(fs::path(other) / "index.html")))
+            return RefuseToWrite(output, file, "what " + one.name + " writes");
         }
       }
     }

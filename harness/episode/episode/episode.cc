@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "grammar/contents.h"
+#include "harness/base/base/text_file.h"
 #include "harness/base/process/worker_pool.h"
 #include "harness/episode/episodes/record_episode.h"
 #include "harness/episode/episodes/recordings.h"
@@ -34,7 +35,7 @@ bool IsComplete(const physics::RunStatus& status) {
 
 /// Of JSON Lines. What is wrong with it is said by who reads all of it.
 Result<EpisodeHeader> HeaderOf(const std::string& file) {
-  std::ifstream in(file);
+  std::ifstream in = OpenRegular(file);
   std::string line;
   EpisodeStream stream(file);
   if (std::getline(in, line) && stream.Take(line).empty() && stream.has_header())

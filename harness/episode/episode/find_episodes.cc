@@ -11,6 +11,7 @@
 
 #include "harness/base/base/content_hash.h"
 #include "harness/base/base/quoting.h"
+#include "harness/base/base/text_file.h"
 #include "harness/episode/episodes/database.h"
 #include "harness/episode/episodes/episode_file.h"
 #include "harness/episode/episodes/plan.h"
@@ -26,13 +27,12 @@ bool IsJsonLines(const std::string& typed) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(typed, error)) return typed.ends_with(".jsonl");
   if (typed.ends_with(".yaml") || typed.ends_with(".yml")) return false;
-  std::ifstream file(typed, std::ios::binary);
-  return file.get() == '{';
+  return OpenRegular(typed).get() == '{';
 }
 
 /// "" if the recording cannot be read, which whoever reads all of it reports.
 std::string GrammarNamedIn(const std::string& recording) {
-  std::ifstream in(recording);
+  std::ifstream in = OpenRegular(recording);
   std::string line;
   EpisodeStream stream(recording);
   const bool is_read = std::getline(in, line) && stream.Take(line).empty() && stream.has_header();
@@ -152,8 +152,11 @@ class TakeFinder {
     const auto entries = ReadTakes(path);
     if (!entries) return NotFound{.diagnostics = entries.error()};
     for (const TakeEntry& entry : *entries) {
-      if (IsTakesFile(entry.recording))
-        return NotFound{.message = path + ": " + entry.recording + " is a file of takes itself"};
+      // Nor a folder that has one: two that name each other would never end.
+      if (IsTakesFile(entry.recording) ||
+          IsTakesFile((fs::path(entry.recording) / "takes.yaml").string()))
+        return NotFound{.message = path + ": " + entry.recording +
+                                   " is a file of takes itself, or a folder with one"};
       if (auto none = Add(entry.recording, entry)) return none;
     }
     return std::nullopt;

@@ -290,7 +290,7 @@ bool IsDb3(const std::string& poses_path) { return EndingOf(poses_path) == ".db3
 
 bool IsJsonOfPoses(const std::string& poses_path) {
   const Result<PoseFormat> format = PoseFormatOf(poses_path);
-  std::ifstream file(poses_path, std::ios::binary);
+  std::ifstream file = OpenRegular(poses_path);
   std::string head(200, ' ');
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
   return format && *format == PoseFormat::kJson &&

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <map>
 
+#include "harness/base/base/text_file.h"
+
 namespace prehend::exchange {
 namespace {
 
@@ -359,7 +361,7 @@ void Agree(const std::optional<T>& of_file, std::optional<Located<T>>& of_map, c
 
 /// Of a file; nothing of one that cannot be read.
 std::string HeadOfFile(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file = OpenRegular(path);
   std::string head(kHeadBytes, '\0');
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
