@@ -346,6 +346,25 @@ TEST(ImportWarnings, ThingsThatStandInATableOrAboveItAreNamed) {
   EXPECT_EQ(SaidOfCup("[2.0, 1.0, 0.04]", "[2.0, 1.0, 0.2]"), "");
 }
 
+// Two tops are near below it: the nearest counts, in whatever order the map has them.
+TEST(ImportWarnings, WhatStandsOnAPadStandsOnNoTableBelowIt) {
+  const std::string table =
+      "  table: {at_m: [0, 0, 0.66], fixed: true, class: Table, size_m: [2.0, 1.0, 0.04]}\n";
+  const auto with_pad = [&](const std::string& z_m, bool first) {
+    const std::string pad =
+        "  pad: {at_m: [0, 0, " + z_m + "], fixed: true, class: Pad, size_m: [2.0, 1.0, 0.04]}\n";
+    const std::string before = Replaced(table, "0.66", "0.7");
+    return SaidOfCup(before, first ? pad + table : table + pad);
+  };
+  for (const bool first : {true, false}) {
+    EXPECT_EQ(with_pad("0.7", first), "") << first;
+    EXPECT_EQ(with_pad("0.68", first),
+              "warning: 'cup' rests 20 mm above 'pad': is at_m or size_m of 'pad', or offset_m or "
+              "size_m of 'cup' wrong?\n")
+        << first;
+  }
+}
+
 TEST(ImportWarnings, BracesWithoutQuotesAreExplained) {
   const auto folder = FreshFolder("import_warnings");
   const Said said =

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "grammar/base/frame.h"
@@ -71,23 +72,27 @@ RestPoses RestPosesOf(const episode::Recording& episode, std::size_t thing) {
     if (IsInReach(entities, frame, box)) return;
     rests.bottoms_m.push_back(box.min().z());
     rests.place.extend(Eigen::AlignedBox2d(box.min().head<2>(), box.max().head<2>()));
+    std::optional<std::size_t> on;  // the one with the nearest top
+    double off_m = 0;
     for (std::size_t other = 0; other < entities.size(); ++other) {
       if (other == thing || entities[other].classes.front() == "Hand" ||
           !grammar::IsTracked(frame.entities[other]))
         continue;
       const Eigen::AlignedBox3d below = BoxOf(entities[other], frame.entities[other]);
-      const double above_m = box.min().z() - below.max().z();
+      double above_m = box.min().z() - below.max().z();
       // Or it is in a bowl, of which only the box is known.
       const bool inside = below.contains(box.center());
       if (!IsAbove(box, below) || (std::abs(above_m) > kOnTop_m && !inside)) continue;
-      ++rests.supported;
-      const bool juts = box.min().z() < below.min().z();  // out of what it would be in
-      if (std::abs(above_m) > kOffTop_m && (!inside || juts) && !IsMovable(entities[other])) {
-        rests.off_m.push_back(above_m);
-        rests.off = other;
-      }
-      break;
+      if (inside && box.min().z() >= below.min().z()) above_m = 0;  // and does not jut out of it
+      if (on && std::abs(above_m) >= std::abs(off_m)) continue;
+      on = other;
+      off_m = above_m;
     }
+    if (!on) return;
+    ++rests.supported;
+    if (std::abs(off_m) <= kOffTop_m || IsMovable(entities[*on])) return;
+    rests.off_m.push_back(off_m);
+    rests.off = *on;
   });
   return rests;
 }
