@@ -260,10 +260,15 @@ def check_proposed():
          "hands": [{"type": "right", "palm": {"position": [1000 * v for v in HANDS[i]], "normal": [0, 0, -1], "velocity": [0, 0, 0]},
                     "digits": [{"bones": [{"tip": [1, 2, 3]}]}], "pinch": 0.5}] if i > 3 else [],
          "objects": [{"name": "Cup", "pos": [1000 * v for v in CUPS[i]], "rot": XYZW}]} for i, t in enumerate(TIMES)]}
-    said, _ = proposed("leap.json", json.dumps(leap), 'frames: "$.frames[*]"', 't: "timestamp"', "time_unit: us", "quaternion_order: xyzw",
+    said, text = proposed("leap.json", json.dumps(leap), 'frames: "$.frames[*]"', 't: "timestamp"', "time_unit: us", "quaternion_order: xyzw",
                        'cup: {position: "objects[name=Cup].pos", rotation: "objects[name=Cup].rot", class: Cup',
-                       'right_hand: {position: "hands[type=right].palm.position", hand: true', "unit: mm", "handed: left")
+                       'right_hand: {position: "hands[type=right].palm.position", hand: true', "unit: mm")
     assert said.returncode == 0 and "right_hand " in said.stdout, said.stderr
+    # Only vectors that are texts look like those of Unity, whose axes are left-handed.
+    assert "handed" not in text, text
+    for vector, wanted in ((lambda p: "(%f, %f, %f)" % tuple(p), True), (list, False)):
+        _, text = proposed("vectors.json", json.dumps([{"t": t, "cup": vector(CUPS[i]), "hand": vector(HANDS[i])} for i, t in enumerate(TIMES)]))
+        assert ("# doubt: vectors are texts, as Unity writes them: its axes are left-handed, handed: left\n" in text) == wanted, text
     rows = "\n".join(json.dumps({"name": n, "t": t, "px": at[i][0], "py": at[i][1], "pz": at[i][2]})
                      for i, t in enumerate(TIMES) for n, at in (("cup", CUPS), ("lhand", HANDS)))
     said, text = proposed("rows.jsonl", rows, 'cup: {position: "[name=cup].p{x,y,z}"', 'left_hand: {position: "[name=lhand].p{x,y,z}", hand: true',

@@ -185,6 +185,12 @@ TEST_F(ImportRightMaps, LeftHandedAxesAreSeenInAMirror) {
   const std::string mended = Warnings(mirrored, entities + "handed: left\n");
   EXPECT_EQ(mended.find("handed"), std::string::npos) << mended;
   EXPECT_EQ(events(), wanted);
+  // And the other way round: the file's axes are right-handed, and the map says left.
+  EXPECT_NE(
+      Warnings(right, entities + "handed: left\n")
+          .find("the file's axes look right-handed, or the hands are exchanged: handed: right; "
+                "or, if it is right, sure: [handed]"),
+      std::string::npos);
 }
 
 }  // namespace

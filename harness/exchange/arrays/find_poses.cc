@@ -125,6 +125,7 @@ class JsonWalk {
         !NumbersOfJson(value, numbers, has_order))
       numbers.clear();
     if (!numbers.empty()) Add(owner, name, path, numbers.size(), has_order);
+    found_.is_of_unity |= is_vector && numbers.size() == 3;
     const std::string whole = Joined(owner, name);
     if (value.is_object() && level < kMostLevels) {
       LookForThree(value, path, whole, !numbers.empty());

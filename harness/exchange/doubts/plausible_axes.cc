@@ -491,8 +491,8 @@ Guess GuessAngleUnit(const PoseFile& poses, const ImportMap& map) {
 
 /// A right hand is to the right of a left one, as both see what they work with.
 Guess GuessHandedness(const PoseFile& poses, const ImportMap& map) {
-  Guess guess{FirstBodyWhere(map), Warning::kHanded, {}, "handed: left"};
-  if (map.is_left_handed) return guess;
+  const std::string other = map.is_left_handed ? "right" : "left";
+  Guess guess{FirstBodyWhere(map), Warning::kHanded, {}, "handed: " + other};
   const MotionSeen seen = MotionIn(poses, map, map.MetresPerUnit());
   std::array<std::size_t, 2> hands{};  // left, right
   std::array<int, 2> named{};
@@ -532,8 +532,8 @@ Guess GuessHandedness(const PoseFile& poses, const ImportMap& map) {
   if (beside_m.size() < 20 || 10 * left_of < 7 * beside_m.size()) return guess;
   guess.signs.push_back(fmt::format(
       "the right hand is {:.2f} m to the left of the left hand, as they see what stands "
-      "before them: the file's axes look left-handed, or the hands are exchanged",
-      -Median(std::move(beside_m))));
+      "before them: the file's axes look {}-handed, or the hands are exchanged",
+      -Median(std::move(beside_m)), other));
   return guess;
 }
 

@@ -100,8 +100,10 @@ class MapProposer {
     PREHEND_TRY(const FoundPoses found,
                 format_ == PoseFormat::kJson ? FindJsonPoses(path_) : FindNpzPoses(path_));
     keys_ = found.keys, needs_rate_ = found.needs_rate, aside_ = found.aside;
-    if (format_ == PoseFormat::kJson)
-      doubts_.push_back("logs of Unity and Unreal have left-handed axes: handed: left");
+    if (found.is_of_unity)
+      doubts_.push_back(
+          "vectors are texts, as Unity writes them: its axes are left-handed, "
+          "handed: left");
     const auto is_bone = [](const FoundBody& body) { return IsBone(WordsIn(body.called)); };
     const bool all_bones = std::ranges::all_of(found.bodies, is_bone);
     std::set<std::string> taken;
