@@ -365,6 +365,18 @@ TEST(ImportWarnings, WhatStandsOnAPadStandsOnNoTableBelowIt) {
   }
 }
 
+// At 0.4 of its size the hand is never out of reach; but as it comes and goes, the cup rests.
+TEST(ImportWarnings, AWrongUnitOfNoNameIsSeenWhereThingsRest) {
+  const std::string said = SaidOfCup("unit: m", "metres_per_unit: 0.4");
+  EXPECT_NE(
+      said.find("warning: 'cup' rests with the lowest point at 0.26 m, and nothing in the map "
+                "has its top within 8 cm of that"),
+      said.npos)
+      << said;
+  EXPECT_NE(said.find("; all that the map places is higher: is unit right?\n"), said.npos) << said;
+  EXPECT_EQ(SaidOfCup("unit: m", "metres_per_unit: 1"), "");
+}
+
 TEST(ImportWarnings, BracesWithoutQuotesAreExplained) {
   const auto folder = FreshFolder("import_warnings");
   const Said said =

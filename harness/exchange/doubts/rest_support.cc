@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -21,7 +22,8 @@ namespace {
 constexpr double kOnTop_m = 0.08;  ///< lie_about of grammar/library/support_from_motion.grammar
 constexpr double kHigh_m = 1.6;
 constexpr double kOffTop_m = 0.015;
-constexpr double kLeast_s = 1;  ///< a shorter rest says nothing
+constexpr double kGrips_m = 0.1;  ///< farther off its box, a hand that moves does not hold it
+constexpr double kLeast_s = 1;    ///< a shorter rest says nothing
 
 Eigen::AlignedBox3d BoxOf(const grammar::EntityInfo& entity, const grammar::EntitySample& look) {
   const Eigen::Vector3d half = look.q_WB.toRotationMatrix().cwiseAbs() * entity.half_size_m;
@@ -49,13 +51,17 @@ struct RestPoses {
   Eigen::AlignedBox2d place;
 };
 
-/// A hand could hold it there; of a hand that is lost nobody knows.
-bool IsInReach(const std::vector<grammar::EntityInfo>& entities, const episode::EpisodeFrame& frame,
-               const Eigen::AlignedBox3d& box) {
+/// A hand could hold it: it is in reach, and did not come from `last` to `frame`, or go. Of a hand
+/// that is lost nobody knows.
+bool IsHeld(const std::vector<grammar::EntityInfo>& entities, const episode::EpisodeFrame& last,
+            const episode::EpisodeFrame& frame, const Eigen::AlignedBox3d& box) {
   for (std::size_t i = 0; i < entities.size(); ++i) {
-    if (entities[i].classes.front() == "Hand" &&
-        !(box.exteriorDistance(frame.entities[i].p_WB_m) > kHandReach_m))
-      return true;
+    if (entities[i].classes.front() != "Hand") continue;
+    const Eigen::Vector3d &was_m = last.entities[i].p_WB_m, &is_m = frame.entities[i].p_WB_m;
+    const double was_off_m = box.exteriorDistance(was_m), off_m = box.exteriorDistance(is_m);
+    const bool passes = (is_m - was_m).norm() > kMoves_m_per_s * kBetweenLooks_s &&
+                        std::max(was_off_m, off_m) > kGrips_m;
+    if (!(off_m > kHandReach_m) && !passes) return true;
   }
   return false;
 }
@@ -69,7 +75,7 @@ RestPoses RestPosesOf(const episode::Recording& episode, std::size_t thing) {
         !((look.p_WB_m - last.entities[thing].p_WB_m).norm() < kSamePlace_m))
       return;
     const Eigen::AlignedBox3d box = BoxOf(entities[thing], look);
-    if (IsInReach(entities, frame, box)) return;
+    if (IsHeld(entities, last, frame, box)) return;
     rests.bottoms_m.push_back(box.min().z());
     rests.place.extend(Eigen::AlignedBox2d(box.min().head<2>(), box.max().head<2>()));
     std::optional<std::size_t> on;  // the one with the nearest top
@@ -105,9 +111,13 @@ std::vector<std::string> RestOddly(const episode::Recording& episode,
   std::vector<std::string> names, lines;
   std::vector<double> bottoms_m;
   Eigen::AlignedBox2d place;
+  double lowest_top_m = std::numeric_limits<double>::infinity();  // of what does not move
   for (std::size_t i = 0; i < entities.size(); ++i) {
-    if (untrue.contains(i) || entities[i].classes.front() == "Hand" || !IsMovable(entities[i]))
-      continue;
+    if (entities[i].classes.front() == "Hand") continue;
+    if (!IsMovable(entities[i]))
+      lowest_top_m =
+          std::min(lowest_top_m, BoxOf(entities[i], episode.frames.front().entities[i]).max().z());
+    if (untrue.contains(i) || !IsMovable(entities[i])) continue;
     const RestPoses rests = RestPosesOf(episode, i);
     if (static_cast<double>(rests.bottoms_m.size()) * kBetweenLooks_s < kLeast_s) continue;
     if (2 * rests.off_m.size() > rests.bottoms_m.size())
@@ -132,7 +142,10 @@ std::vector<std::string> RestOddly(const episode::Recording& episode,
       "0.04]}}'{}",
       fmt::join(names, ", "), names.size() == 1 ? "rests" : "rest", height_m, 100 * kOnTop_m,
       Tenths(middle.x()), Tenths(middle.y()), height_m - 0.02, size.x(), size.y(),
-      height_m > kHigh_m ? "; that is higher than people work: is unit right?" : ""));
+      height_m > kHigh_m ? "; that is higher than people work: is unit right?"
+      : height_m < lowest_top_m - kOnTop_m && std::isfinite(lowest_top_m)
+          ? "; all that the map places is higher: is unit right?"
+          : ""));
   return lines;
 }
 
