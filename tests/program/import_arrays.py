@@ -177,6 +177,7 @@ def check_json():
             ("hands[.palm", "hands[type=right].palm", "is no path into a frame"),
             ("hands[type=right].palm", "hands[type=right].palm.position", "expected numbers", "frame 0"),
             ("hands[type=right].pinch", "hands[type=right].palm.position", "expected 3 numbers in a row"),
+            ("rotation: \"objects['my cup'].p", "rotation: \"$.objects['my cup'].q", "'objects['my cup'].p' is named twice", "each key has a dataset"),
             ("unit: mm\nlost: 1", "unit: mm", "map.yaml:4"),
             ("", "frames: \"$.frames[*]\"\n", "is one object", "frames[*]"),
             ("", "time_unit: us\n", "time_unit is missing"),

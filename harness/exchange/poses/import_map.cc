@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "harness/base/base/number_text.h"
 #include "harness/exchange/hdf5/hdf5_file.h"
@@ -64,6 +65,16 @@ void CheckOrientation(const ImportMap& map, DiagnosticList& errors) {
              "euler_order: XYZ, if each is about the body's own axis; xyz, about the file's");
 }
 
+/// What must differ: columns of a pose, markers of a body.
+void CheckTwice(const std::vector<Located<std::string>>& names, const char* has,
+                DiagnosticList& errors) {
+  std::set<std::string> taken;
+  for (const Located<std::string>& name : names)
+    if (!taken.insert(name.value).second)
+      errors.Add(name.where, fmt::format("'{}' is named twice", name.value),
+                 fmt::format("each {} of its own", has));
+}
+
 /// What only files of comma-separated values have.
 void CheckColumns(const ImportMap& map, const YamlNode& root, DiagnosticList& errors) {
   const Columns& columns = map.columns;
@@ -75,7 +86,10 @@ void CheckColumns(const ImportMap& map, const YamlNode& root, DiagnosticList& er
   if (!map.time_unit && columns.time)
     return errors.Add(root.where, "'time_unit' is missing: a CSV file needs it",
                       "time_unit: s, ms, us, ns, iso or frame");
+  std::vector<Located<std::string>> all = columns.body;
+  if (columns.time) all.push_back(*columns.time);
   for (const auto* list : {&columns.position, &columns.Orientation()}) {
+    all.insert(all.end(), list->begin(), list->end());
     for (const Located<std::string>& column : *list) {
       const bool names_body = column.value.find("{}") != std::string::npos;
       if (!columns.body.empty() && names_body)
@@ -88,6 +102,7 @@ void CheckColumns(const ImportMap& map, const YamlNode& root, DiagnosticList& er
                    "columns.body which column has it; with neither, the file is of one body");
     }
   }
+  CheckTwice(all, "number has a column", errors);
   CheckOrientation(map, errors);
   if (!columns.time && !map.rate_hz)
     errors.Add(columns.where, "neither columns.time nor rate_hz says when a row is");
@@ -119,6 +134,7 @@ void CheckOpenings(const Named<MappedEntity>& entity, PoseFormat format, Diagnos
   for (const auto* opening : {&e.grip, &e.joint}) {
     if (!*opening) continue;
     const Where& where = (*opening)->where;
+    CheckTwice((*opening)->from, "number that is added has a source", errors);
     if (format == PoseFormat::kBvh || format == PoseFormat::kC3d)
       errors.Add(where, "files of this kind have poses only: grip and joint are read from CSV");
     if ((*opening)->open == (*opening)->closed)
@@ -158,8 +174,13 @@ void CheckDatasets(const Named<MappedEntity>& entity, PoseFormat format, Diagnos
                                 "axis_angle", "rotation", "first"};
   const std::array values = {&e.pose,       &e.position, &e.quaternion, &e.euler,
                              &e.axis_angle, &e.rotation, &e.first};
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (*values[i]) check(**values[i], kKeys[i]);
+  std::vector<Located<std::string>> all;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!*values[i]) continue;
+    check(**values[i], kKeys[i]);
+    all.push_back(**values[i]);
+  }
+  CheckTwice(all, "key has a dataset", errors);
   for (const auto* opening : {&e.grip, &e.joint})
     for (std::size_t i = 0; has_arrays && *opening && i < (*opening)->from.size(); ++i)
       check((*opening)->from[i], "from");
@@ -226,6 +247,7 @@ void CheckMap(const ImportMap& map, PoseFormat format, const YamlNode& root,
     tracked = tracked || e.from;
     CheckDatasets(entity, format, errors);
     CheckOpenings(entity, format, errors);
+    CheckTwice(e.markers, "marker has a name", errors);
     if (!e.markers.empty() && !is_csv && format != PoseFormat::kC3d)
       errors.Add(e.markers.front().where,
                  "'markers' are of tables and of C3D; this file is neither");
