@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Timed events as a table that draws itself, and explanations."""
+import difflib
 import html
 import json
+import os
 
 import numpy as np
 import pandas as pd
@@ -87,7 +89,7 @@ class Events(pd.DataFrame):
         ----------
         per_frame : float
             Frames per second of the video.
-        events : list of str
+        events : str or list of str
             Which ones; by default the phases of hands (``drawn as phase``), or all if there is none.
         idle : str
             The label where no event holds.
@@ -104,6 +106,12 @@ class Events(pd.DataFrame):
         found = np.full(len(t), idle, dtype=object)
         if events is None and source.grammar:
             events = source.grammar.events.index[source.grammar.events["phase"]]
+        events = [events] if isinstance(events, str) else events
+        known = {*self["event"], *source.grammar.events.index} if source.grammar else set()
+        for name in set(events) - known if known and events is not None else ():
+            near = difflib.get_close_matches(str(name), map(str, known), 1)
+            fail(Error, f"events: no event of the grammar is called {name!r}",
+                 f"did you mean {near[0]!r}?" if near else f"there are: {', '.join(sorted(known))}")
         chosen = self[self["event"].isin(events)] if events is not None and len(events) else self
         for row in chosen.sort_values(["begin_s", "end_s"], ascending=[True, False]).itertuples():
             found[np.searchsorted(t, row.begin_s - 1e-9):np.searchsorted(t, row.end_s - 1e-9)] = row.event
@@ -121,6 +129,8 @@ class Events(pd.DataFrame):
         if str(file).endswith(".json"):
             self.to_json(file, orient="records")
             return
+        if not str(file).lower().endswith((".csv", ".eaf", ".textgrid")):
+            fail(Error, f"found {os.path.basename(file)!r}, wanted NAME.csv, .eaf, .TextGrid or .json", "write('take1.eaf')")
         self._has_source().episode.write_labels(self._tuples(), str(file))
 
     def svg(self) -> str:

@@ -11,6 +11,7 @@ from .errors import DoubtfulFrames, FrameError, fail, warn, wrong
 _FINE = 10_000  # ticks per second, as `prehend import` has them
 _POSE = ["x", "y", "z", "qw", "qx", "qy", "qz"]
 FAR_M, FAR = 20, "positions are up to {:g} m apart\n  hint: metres are wanted; divide millimetres by 1000"
+_PARTS = (("milliseconds", 1000, "1000"), ("microseconds", 1e6, "1e6"), ("nanoseconds", np.inf, "1e9"))  # below these steps
 _HAND_SIZE_M = (0.09, 0.084, 0.025)
 
 
@@ -113,7 +114,8 @@ def _times(t, rate_hz, frames):
     if rate_hz is None and frames > 9 and (np.round(steps) == steps).all() and np.mean(steps == 1) > 0.9:
         wrong("t are whole numbers that grow by 1 each: they look like frame numbers", "seconds: t / frames_per_second; or rate_hz")
     if usual > 2:
-        wrong(f"frames are {usual:g} s apart", "t is in seconds; divide milliseconds by 1000")
+        unit, _, parts = next(one for one in _PARTS if usual < one[1])
+        wrong(f"frames are {usual:g} s apart", f"t is in seconds; divide {unit} by {parts}")
     if abs(t[0]) > 1e6:
         wrong(f"t begins at {t[0]:g} s", "count from the beginning: t - t[0]")
     per_second = _FINE

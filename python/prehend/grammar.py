@@ -5,6 +5,7 @@ import csv
 import io
 import json
 import os
+import re
 import tempfile
 from typing import Optional, Union
 
@@ -133,16 +134,16 @@ class Grammar:
         if len(found) != len(truth) or not len(found):
             fail(Error, f"{len(found)} of found, {len(truth)} of truth", "one truth for each episode, in the same order")
         compared = []
-        with contextlib.ExitStack() as files:
-            for one, labels in zip(found, truth):
+        with _Truth(truth, self) as labelled:
+            for one, file in zip(found, labelled.files):
                 if isinstance(one, pd.DataFrame) and not isinstance(one, events.Events):
                     fail(Error, "found: a table does not say which entities there are",
                          "what segment() returned, monitor.events(told), or an episode")
                 one = one if isinstance(one, events.Events) else self.segment(one)
                 source = one._has_source()
-                compared.append((source.episode, one._tuples(), files.enter_context(_file_of(labels, self)), source.end))
+                compared.append((source.episode, one._tuples(), file, source.end))
             scores, strange = _prehend.score(self._compiled, compared, str(map or ""), collar_s)
-        warn(strange, DoubtfulLabels)
+        warn(labelled.as_called(strange), DoubtfulLabels)
         scores = json.loads(scores)
         return pd.json_normalize(scores["events"] + [scores["total"]], sep="_").set_index("event")
 
@@ -170,15 +171,14 @@ class Grammar:
         opened = episodes.open(episodes_) if isinstance(episodes_, (str, os.PathLike)) else episodes_
         opened = opened if isinstance(opened, (list, tuple, episodes.Episodes)) else [opened]
         truth = truth if isinstance(truth, (list, tuple)) else [truth]
-        with tempfile.TemporaryDirectory(prefix="prehend_") as folder, contextlib.ExitStack() as tables:
+        with tempfile.TemporaryDirectory(prefix="prehend_") as folder, _Truth(truth, self) as labelled:
             files = [one.file or os.path.join(folder, f"{number}.jsonl") for number, one in enumerate(opened)]
             for file, one in zip(files, opened):
                 if not one.file:
                     one.write(file)
-            labels = [tables.enter_context(_file_of(one, self)) for one in truth]
-            text, strange = _prehend.margins(list(dict.fromkeys(files)), self._compiled, labels, str(map or ""),
+            text, strange = _prehend.margins(list(dict.fromkeys(files)), self._compiled, labelled.files, str(map or ""),
                                              [over] if isinstance(over, str) else list(over), float(within))
-        warn(strange, DoubtfulLabels)
+        warn(labelled.as_called(strange), DoubtfulLabels)
         return pd.read_csv(io.StringIO(text)).set_index("parameter")
 
     def __repr__(self):
@@ -186,6 +186,34 @@ class Grammar:
 
     def __str__(self):
         return self._compiled.describe()
+
+
+class _Truth(contextlib.ExitStack):
+    """Labels as files, and what is said of them in the words of a call: a table is no file, and there are no options."""
+
+    _WORDS = {"--map labels.yaml": "map='labels.yaml'", "--skip-bad-labels leaves out what": "leave out what",
+              "rows: {COLUMN: NAME} in a file of takes tells them apart": "score the rows of one alone"}
+
+    def __init__(self, truth, grammar):
+        super().__init__()
+        self.files = [self.enter_context(_file_of(one, grammar)) for one in truth]
+        self._tables = {file: ("truth" if len(truth) == 1 else f"truth[{number}]", one.index)
+                        for number, (file, one) in enumerate(zip(self.files, truth)) if isinstance(one, pd.DataFrame)}
+
+    def as_called(self, text):
+        for words in self._WORDS.items():
+            text = text.replace(*words)
+        for file, (name, index) in self._tables.items():
+            def row(at, name=name, index=index):
+                return f"{name}, row {index[min(int(at[1]) - 2, len(index) - 1)]}" if int(at[1] or 0) > 1 else name
+            text = re.sub(re.escape(file) + r"(?::(\d+)(?::\d+)?)?", row, text)
+        return text
+
+    def __exit__(self, kind, error, trace):
+        super().__exit__(kind, error, trace)
+        if isinstance(error, Error):
+            raise type(error)([((self.as_called(f"{file}:{line}"), 0, 0) if file in self._tables else (file, line, column))
+                               + tuple(map(self.as_called, texts)) for file, line, column, *texts in error.diagnostics]) from None
 
 
 @contextlib.contextmanager

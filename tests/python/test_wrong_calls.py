@@ -152,7 +152,9 @@ CALLS = {
     "nothing to open": (lambda: prehend.open([]), E, "no path is named"),
     "an unknown signal": (lambda: episode().signals("distence"), ANY, "did you mean 'distance'"),
     "an unknown event": (lambda: episode().explain("graspin"), ANY, "did you mean 'grasping'"),
-    "labels of another kind": (lambda: episode().events.write("/tmp/x.xml"), ANY, r"\.csv, \.eaf or \.TextGrid"),
+    "labels of another kind": (lambda: episode().events.write("/tmp/x.xml"), ANY, r"'x.xml', wanted NAME\.csv, \.eaf, \.TextGrid or \.json"),
+    "labels of an event of nobody": (lambda: segment().labels(events=["contact", "graspin"]), ANY,
+                                     "no event of the grammar is called 'graspin'.*did you mean 'grasping'"),
     "labels zero times a second": (lambda: segment().labels(per_frame=0), ANY, "frames per second"),
     "a truth without times": (lambda: Truth.score(pd.DataFrame({"event": ["grasping"]})), ANY, "begin_s, end_s and label"),
     "a truth of nobody": (lambda: Truth.score(pd.DataFrame({"begin_s": [0], "end_s": [1], "label": ["graspng"]})), ANY,
@@ -188,6 +190,38 @@ class WrongCalls(unittest.TestCase):
         self.assertEqual((error.line, error.column), (4, 9))
         self.assertIn("did you mean 'distance'?", error.remedy)
         self.assertIn("^", str(error))
+
+    def test_rows_of_a_table_are_named_by_the_argument(self):
+        labels = pd.DataFrame({"begin_s": [0, 1.0], "end_s": [1, 0.5], "label": ["contact", "graspin"]}, index=[7, 9])
+        for truth, of in ((labels, "truth, row 9"), ([labels, labels], "truth[0], row 9")):
+            with self.assertRaises(prehend.Error) as raised:
+                prehend.Grammar("pick_and_place_from_motion").score([segment()] * (len(truth) if of[5] == "[" else 1), truth)
+            error = raised.exception
+            self.assertEqual((error.file, error.line, error.column), (of, 0, 0))
+            self.assertTrue(str(error).startswith(of + ": error: 'graspin' ends before it begins: 1 s to 0.5 s"), error)
+            self.assertTrue(str(error).endswith("hint: leave out what ends before it begins"), error)
+            self.assertNotIn("/tmp", str(error.diagnostics))
+        with self.assertRaises(prehend.Error) as raised:
+            Truth.score(labels.assign(end_s=2))
+        self.assertIn("truth, row 9: error: found the label 'graspin'", str(raised.exception))
+        self.assertTrue(raised.exception.remedy.endswith(": map='labels.yaml'"), raised.exception)
+        twice = pd.DataFrame({"begin_s": [0, 0.5], "end_s": [1, 2], "label": ["reaching"] * 2})
+        of_arrays = prehend.episode(GOOD, rate_hz=60, entities=takes.ENTITIES)
+        for call in (Truth.score, lambda truth: prehend.Grammar("pick_and_place_from_motion").margins(
+                of_arrays, truth, over=["reach_radius"])):
+            with warnings.catch_warnings(record=True) as told:
+                warnings.simplefilter("always", prehend.DoubtfulLabels)
+                call(twice)
+            told = [str(one.message) for one in told if "overlaps" in str(one.message)]
+            self.assertEqual(len(told), 1)
+            self.assertTrue(told[0].startswith("truth, row 1: warning: a label overlaps"), told)
+            self.assertTrue(told[0].endswith("did two people mark them? score the rows of one alone"), told)
+
+    def test_times_in_another_unit(self):
+        for factor, unit in ((1e3, "milliseconds by 1000"), (1e6, "microseconds by 1e6"), (1e9, "nanoseconds by 1e9")):
+            with self.assertRaises(prehend.FrameError) as raised:
+                segment(t=(T * factor).astype(np.int64))
+            self.assertEqual(raised.exception.remedy, f"t is in seconds; divide {unit}")
 
     def test_a_monitor_is_of_one_thread_at_a_time(self):
         monitor = prehend.Grammar("pick_and_place_from_motion").monitor(takes.ENTITIES)
