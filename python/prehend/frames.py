@@ -180,8 +180,10 @@ def doubts(entities, poses):
     seen = {one: at for one, at in seen.items() if len(at)}
     if seen and (span := np.ptp(np.concatenate(list(seen.values())), axis=0).max()) > FAR_M:
         told.append(FAR.format(span))
-    turns = [at[~np.isnan(at[:, 3]), 3:] for one, at in poses.items() if at.shape[1] == 7 and not sizes[one].get("fixed")]
-    w, _, _, last = np.median(np.abs(np.concatenate(turns)), axis=0) if any(map(len, turns)) else (1, 0, 0, 0)
+    turns = {one: at[~np.isnan(at[:, 3]), 3:] for one, at in poses.items() if at.shape[1] == 7 and not sizes[one].get("fixed")}
+    # A thing that stands has w near 1; hands point anywhere.
+    turns = [at for one, at in turns.items() if not is_hand[one] and len(at)] or [at for at in turns.values() if len(at)]
+    w, _, _, last = np.median(np.abs(np.concatenate(turns)), axis=0) if turns else (1, 0, 0, 0)
     if w <= 0.5 and last >= 0.85:
         told.append(f"the first of four numbers, as w, is {w:.2f} (median, without its sign), the last is {last:.2f}: this looks "
                     "like (x, y, z, w)\n  hint: quaternions are (w, x, y, z): array[:, [0, 1, 2, 6, 3, 4, 5]]")

@@ -290,6 +290,15 @@ class Doubtful(unittest.TestCase):
             self.assertEqual(said != "", says != "", said)
             self.assertIn(says, said)
 
+        w_last = {"cup": [0, 0, 0.2, 0.98], "right_hand": [0.7, 0, 0.14, 0.7], "left_hand": [0.6, 0.6, 0.36, 0.38]}
+        entities = {**takes.ENTITIES, "left_hand": "Hand"}
+        frames = {one: np.hstack([GOOD[one if one in GOOD else "right_hand"], np.tile(order, (N, 1))])
+                  for one, order in w_last.items()}
+        self.assertIn("the last is 0.98", self.told(frames, entities), "hands point anywhere")
+        self.assertEqual(self.told({one: at[:, [0, 1, 2, 6, 3, 4, 5]] for one, at in frames.items()}, entities), "")
+        del frames["cup"]
+        self.assertEqual(self.told(frames, entities), "")
+
     def test_live_and_later(self):
         monitor = prehend.Grammar("contact").monitor(takes.ENTITIES)
         with warnings.catch_warnings(record=True) as told:
