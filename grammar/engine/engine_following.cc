@@ -142,8 +142,7 @@ bool Engine::MayFollow(RuleInstance& instance, FrameNumber resumes) {
 bool Engine::Follow(RuleInstance& instance) {
   const Follows& follows = follows_[instance.rule];
   if (!(instance.open ? follows.open : follows.closed) || instance.awaited || instance.in_gap ||
-      (instance.open && !instance.certain) || !instance.pending.empty() || log_ != nullptr ||
-      finishing_)
+      (instance.open && !instance.certain) || !instance.pending.empty() || finishing_)
     return false;
   if (following_.size() <= instance.index.index()) following_.resize(instance.index.index() + 1);
   const bool looks_back = RuleOf(instance).form() == Form::kUntilSince;

@@ -101,6 +101,10 @@ class Study(takes.Folder, unittest.TestCase):
         why = self.milk.explain("transporting")
         self.assertEqual(str(why), takes.program("explain", self.folder / "milk.jsonl", "--event", "transporting"))
         self.assertIn("<ul><li>", why._repr_html_())
+        for grammar in (None, "hand_actions_from_motion"):
+            events = self.milk.segment(grammar)
+            self.assertEqual(sorted(one["decided_tick"] for one in self.milk.explain(grammar=grammar).data["events"]),
+                             sorted((events["decided_s"] * self.milk.ticks_per_second).round()), "it is told then")
         why_not = self.grammar.explain(self.milk, "sliding@2s")
         self.assertTrue(str(why_not).startswith("sliding"))
         self.assertIn("did not happen", why_not._repr_html_())

@@ -126,7 +126,7 @@ TEST(Explain, AClauseOfBothThresholdsIsToldOnce) {
 
 TEST(Explain, RememberingChangesNothing) {
   const std::string root = PREHEND_SOURCE_DIR;
-  for (const std::string grammar : {"", "original_2020"}) {
+  for (const std::string grammar : {"", "original_2020", "pick_and_place_from_motion"}) {
     Result<episode::Episode> episode = episode::OpenEpisode(
         {.file = root + "/scenarios/" + kSlide + ".yaml"}, {grammar, {}}, root);
     ASSERT_TRUE(episode);
