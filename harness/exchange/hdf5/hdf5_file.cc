@@ -186,7 +186,8 @@ Hdf5Object ObjectOf(hid_t dataset) {
   return {.name = {},
           .kind = KindOf(type),
           .bytes = static_cast<int>(std::max<std::size_t>(1, H5Tget_size(type))),
-          .shape = {shape.begin(), shape.end()}};
+          .shape = {shape.begin(), shape.end()},
+          .is_unsigned = KindOf(type) == Hdf5Kind::kInteger && H5Tget_sign(type) == H5T_SGN_NONE};
 }
 
 std::string TextIn(hid_t attribute, hid_t type) {
@@ -250,8 +251,8 @@ std::string Hdf5Object::Text() const {
   const std::string type = kNames[static_cast<std::size_t>(kind)];
   if (kind == Hdf5Kind::kGroup) return type;
   const bool sized = kind == Hdf5Kind::kFloat || kind == Hdf5Kind::kInteger;
-  return fmt::format("({}{}) {}{}", fmt::join(shape, ", "), shape.size() == 1 ? "," : "", type,
-                     sized ? std::to_string(8 * bytes) : "");
+  return fmt::format("({}{}) {}{}{}", fmt::join(shape, ", "), shape.size() == 1 ? "," : "",
+                     is_unsigned ? "u" : "", type, sized ? std::to_string(8 * bytes) : "");
 }
 
 Result<Hdf5File> Hdf5File::Open(const std::string& path) {

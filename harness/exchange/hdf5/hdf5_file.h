@@ -31,6 +31,7 @@ struct Hdf5Object {
   Hdf5Kind kind = Hdf5Kind::kOther;
   int bytes = 0;                     ///< of a value
   std::vector<std::uint64_t> shape;  ///< none: a single value
+  bool is_unsigned = false;
 
   std::uint64_t Rows() const { return shape.empty() ? 1 : shape[0]; }
   /// Values in a row.

@@ -36,6 +36,8 @@ with h5py.File('a.hdf5', 'w') as f:
   g['turn'] = np.arange(32.0).reshape(2, 4, 4)
   g['text'] = 'words'
   g['one'] = 2.5
+  g['image'] = np.zeros((2, 2, 3), 'u1')
+  g['steps'] = np.zeros(2, '>u2')
   g['half'] = np.zeros(3, 'f2')
   g['inner'] = h5py.SoftLink('/data/demo_2/one')
   g['nowhere'] = h5py.SoftLink('/data/demo_3')
@@ -101,6 +103,8 @@ TEST_F(Hdf5FileTest, SaysWhatIsThere) {
   EXPECT_EQ(text("zipped"), "(250, 4) int64");
   EXPECT_EQ(text("turn"), "(2, 4, 4) float64");
   EXPECT_EQ(text("one"), "() float64");
+  EXPECT_EQ(text("image"), "(2, 2, 3) uint8");
+  EXPECT_EQ(text("steps"), "(2,) uint16");
   EXPECT_EQ(file.Describe("data/demo_2/turn").value().Width(), 16u);
   EXPECT_TRUE(file.Has("data/demo_10"));
   EXPECT_FALSE(file.Has("data/demo_3"));
