@@ -411,26 +411,37 @@ char SeparatorOf(std::string_view line) {
 
 }  // namespace
 
+bool IsLabelTrack(std::string_view text) {
+  const std::vector<CsvCell> cells = CsvCellsOf(text.substr(0, text.find('\n')), '\t');
+  return cells.size() == 3 && NumberIn(cells[0].text) && NumberIn(cells[1].text);
+}
+
 Diagnostics ReadCsvLabels(LabelFile& file, const CsvReading& how) {
   std::optional<RowTaker> rows;
   std::size_t width = 0;
   char separator = ',';
   const std::string_view text = file.text;
+  const bool has_no_header = IsLabelTrack(text);
   int line_number = 0;
   for (std::size_t begin = 0; begin < text.size() && !(rows && rows->IsFull());) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     const std::string_view line = text.substr(begin, end - begin);
     begin = end + 1;
     if (++line_number == 1) {
-      separator = LowerCase(file.file).ends_with(".tsv") ? '\t' : SeparatorOf(line);
+      const bool has_tabs = has_no_header || LowerCase(file.file).ends_with(".tsv");
+      separator = has_tabs ? '\t' : SeparatorOf(line);
       std::vector<std::string> words;
-      for (const CsvCell& cell : CsvCellsOf(line, separator)) words.emplace_back(cell.text);
+      const std::string_view head = has_no_header ? "begin_s\tend_s\tlabel" : line;
+      for (const CsvCell& cell : CsvCellsOf(head, separator)) words.emplace_back(cell.text);
       PREHEND_TRY(CsvColumns known, ColumnFinder(file, words, how).Find());
       width = words.size();
       rows.emplace(file, std::move(known), std::move(words));
-      continue;
+      if (!has_no_header) continue;
     }
-    if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
+    // A line "\\", low, high says the frequencies of the label above.
+    if (line.find_first_not_of(" \t") == std::string_view::npos ||
+        (has_no_header && line.starts_with('\\')))
+      continue;
     const std::vector<CsvCell> cells = CsvCellsOf(line, separator);
     const auto faulty =
         std::ranges::find_if(cells, [](const CsvCell& cell) { return !cell.fault.empty(); });

@@ -443,7 +443,7 @@ Result<LabelFile> ReadLabels(const std::string& path, const CsvReading& csv, Bac
   LabelFile file{.file = path, .text = std::move(text)};
   const std::string ending = EndingOf(path);
   Diagnostics problems;
-  if (IsTable(path)) {
+  if (IsTable(path) || (ending == ".txt" && IsLabelTrack(file.text))) {
     problems = ReadCsvLabels(file, csv);
   } else if (ending == ".txt") {
     problems = ReadFrameLabels(file, csv);

@@ -88,6 +88,8 @@ Result<LabelFile> ReadLabels(const std::string& path, const CsvReading& csv = {}
 // The readers of one format each; `text` is that of the file. They fill `file.labels`.
 /// Times are numbers, 1:02:03.5 and 02:03.5, or 2026-10-25T01:59:57.010, which is seconds of 1970.
 grammar::Diagnostics ReadCsvLabels(LabelFile& file, const CsvReading& how = {});
+/// Without a header begin, end and label, with tabs between them (Audacity).
+bool IsLabelTrack(std::string_view text);
 /// A line for each frame, with nothing but its label (MS-TCN).
 /// Lines that are as many as the recording has frames are those of these; else `rate_hz` counts.
 grammar::Diagnostics ReadFrameLabels(LabelFile& file, const CsvReading& how);

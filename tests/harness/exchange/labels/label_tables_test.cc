@@ -49,6 +49,16 @@ class LabelTables : public testing::Test {
       ("tables_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
 };
 
+TEST_F(LabelTables, ALabelTrackHasNoHeader) {
+  const std::string track =
+      "0.600000\t1.600000\treach, slow\n\\\t200.000000\t4000.000000\n2.5\t2.5\tclick\n";
+  for (const char* name : {"a.txt", "a.tsv", "a.csv"})
+    EXPECT_EQ(Read(name, track), "0.6..1.6 reach, slow; 2.5..2.5 click; ") << name;
+  EXPECT_EQ(Read("a.txt", "1\t2\thold\n3\tfour\thold\n"),
+            "2:3 end_s: found 'four', wanted a number or a time like 0:01:02.5 | ");
+  EXPECT_EQ(Read("a.txt", "1\n1\n2\n", {.rate_hz = 2}), "0..1 1; 1..1.5 2; ") << "frames";
+}
+
 TEST_F(LabelTables, ALengthStandsForAnEnd) {
   EXPECT_EQ(Read("a.tsv", "onset\tduration\ttrial_type\n1.3\t1.6\tgrasp, firmly\n"),
             "1.3..2.9 grasp, firmly; ");
