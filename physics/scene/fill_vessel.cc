@@ -77,8 +77,8 @@ class Filling {
       const auto cell = next.front();
       next.pop_front();
       const Vector3d p_B_m = At(cell, z, shifted);
+      if (!IsClear(p_B_m)) continue;  // in the wall, or against it from outside
       if (!IsOver(p_B_m)) return false;
-      if (!IsClear(p_B_m)) continue;
       layer.push_back(Shaken(p_B_m));
       for (const auto& [dx, dy] :
            {std::pair(1, 0), std::pair(0, 1), std::pair(-1, 0), std::pair(0, -1)}) {

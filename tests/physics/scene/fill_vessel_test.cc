@@ -17,12 +17,13 @@ Body Made(const Vessel& vessel) {
 }
 
 /// In the hollow, and clear of the walls and of each other.
-void ExpectLoose(const Body& vessel, const std::vector<Eigen::Vector3d>& grains) {
+void ExpectLoose(const Body& vessel, const std::vector<Eigen::Vector3d>& grains,
+                 double radius_m = kRadius_m) {
   for (std::size_t i = 0; i < grains.size(); ++i) {
     EXPECT_TRUE(IsInside(vessel, Pose{}, grains[i]));
-    EXPECT_GT(DistanceTo(vessel, grains[i]), kRadius_m * 0.99);
+    EXPECT_GT(DistanceTo(vessel, grains[i]), radius_m * 0.99);
     for (std::size_t j = 0; j < i; ++j)
-      ASSERT_GT((grains[i] - grains[j]).norm(), 2 * kRadius_m) << i << " " << j;
+      ASSERT_GT((grains[i] - grains[j]).norm(), 2 * radius_m) << i << " " << j;
   }
 }
 
@@ -31,6 +32,20 @@ TEST(FillVessel, GrainsLieInTheHollow) {
     const auto grains = FillVessel(vessel, kRadius_m, 100, 1);
     EXPECT_EQ(grains.size(), 100u);
     ExpectLoose(vessel, grains);
+  }
+}
+
+TEST(FillVessel, AThinWallHoldsThemHoweverTheyLie) {
+  const Body glass = Made(Mug{.radius_m = 0.05, .height_m = 0.15, .wall_m = 0.002}),
+             mug = Made(Mug{.radius_m = 0.05, .height_m = 0.15}),
+             tray = Made(Tray{.wall_m = 0.001});
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    for (const auto& [vessel, radius_m] :
+         {std::pair(&glass, 0.004), std::pair(&mug, 0.008), std::pair(&tray, 0.008)}) {
+      const auto grains = FillVessel(*vessel, radius_m, 100, seed);
+      EXPECT_EQ(grains.size(), 100u) << seed << ", " << radius_m;
+      ExpectLoose(*vessel, grains, radius_m);
+    }
   }
 }
 
