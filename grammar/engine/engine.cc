@@ -99,7 +99,8 @@ void Engine::WakeWatchers(int entity, const std::vector<Watch>& watchers) {
       continue;  // most of them
     const RuleInstance& instance = instances_[watch.instance];
     if (instance.awake || (rests_until_m > 0 && Ways_m(instance) < rests_until_m)) continue;
-    if (MayWake(instance) && !instances_.NeedsOneThatRests(instance)) Wake(watch.instance);
+    if (log_ == nullptr && instances_.NeedsOneThatRests(instance)) continue;
+    if (MayWake(instance)) Wake(watch.instance);
   }
 }
 

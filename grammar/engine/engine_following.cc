@@ -269,7 +269,7 @@ FrameNumber Engine::KnownOf(InstanceId follower) {
 void Engine::CatchUp(RuleInstance& instance, FrameNumber end) {
   FrameNumber next = std::min(end, following_[instance.index].assumed);
   const auto* from_to = RuleOf(instance).If<FromToRule>();
-  if (from_to != nullptr && !instance.open && AsksOnlyOthers(from_to->from)) {
+  if (from_to != nullptr && !instance.open && begins_by_others_[instance.rule] != 0) {
     next = std::min(next, BoundOf(from_to->from, instance).known);
   } else {
     ForEachFollowed(instance, [&](InstanceId index) {

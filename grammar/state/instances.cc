@@ -32,17 +32,17 @@ FormState StateFor(Form form) {
 
 }  // namespace
 
-namespace {
-
-void CollectNeeded(const Program& program, NodeId index, std::vector<int>& references) {
+// So that the condition is `truth`.
+void RuleInstances::CollectNeeds(const Program& program, NodeId index, bool truth,
+                                 std::vector<Need>& needs) {
   const Node& node = program.nodes[index];
-  if (node.op == Op::kHolds) references.push_back(node.slot);
-  if (node.op != Op::kAnd) return;
-  CollectNeeded(program, node.args[0], references);
-  CollectNeeded(program, node.args[1], references);
+  if (node.op == Op::kHolds) needs.push_back({node.slot, truth});
+  if (node.op == Op::kNot) CollectNeeds(program, node.args[0], !truth, needs);
+  if (node.op == Op::kBegins && truth) CollectNeeds(program, node.args[0], true, needs);
+  if (node.op != (truth ? Op::kAnd : Op::kOr)) return;
+  CollectNeeds(program, node.args[0], truth, needs);
+  CollectNeeds(program, node.args[1], truth, needs);
 }
-
-}  // namespace
 
 void TouchingState::Reset() {
   touched = -1;
@@ -74,10 +74,13 @@ RuleInstances::RuleInstances(const Program& program, const EntityTable& entity_t
   }
   for (const Rule& rule : program.rules) {
     symmetric_.push_back(rule.symmetric ? 1 : 0);
-    std::vector<int>& needs = needs_[needs_.push_back({})];
-    if (const auto* holds = rule.If<WhileRule>();
-        holds != nullptr && holds->at_least == 0 && program.waits)
-      CollectNeeded(program, holds->condition, needs);
+    std::vector<Need>& needs = needs_[needs_.push_back({})];
+    NodeId needed;
+    if (const auto* holds = rule.If<WhileRule>(); holds != nullptr && holds->at_least == 0)
+      needed = holds->condition;
+    if (const auto* from_to = rule.If<FromToRule>()) needed = from_to->from;
+    if (const auto* looks_back = rule.If<UntilSinceRule>()) needed = looks_back->since;
+    if (needed != kNone && program.waits) CollectNeeds(program, needed, true, needs);
     std::vector<std::vector<bool>>& roles = fits_[fits_.push_back({})];
     for (const RuleRole& role : rule.roles) {
       std::vector<bool>& entities = roles.emplace_back();
@@ -371,6 +374,7 @@ InstanceKey RuleInstances::Referred(const RuleInstance& instance, int slot) cons
 
 InstanceId RuleInstances::MakeReferred(RuleInstance& instance, int slot) {
   const InstanceKey key = Referred(instance, slot);
+  if (!Fits(key.rule, key.entities)) return kNone;
   Refer(instance, slot, Ensure(key.rule, key.entities));
   return instance.references[slot];
 }

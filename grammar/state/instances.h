@@ -294,13 +294,15 @@ class RuleInstances {
   /// The instances that look at an entity, and those that look at nothing but its grip.
   const std::vector<Watch>& PoseWatchers(int entity) const { return pose_watchers_[entity]; }
   const std::vector<Watch>& GripWatchers(int entity) const { return grip_watchers_[entity]; }
-  /// It is not open, and something that must be true for it to begin is false, and known to be:
-  /// that one's begin wakes it, if nothing else does.
+  /// It is not open, and something that must be true for it to begin, or to lead on, is false, and
+  /// known to be, or the other way round: that one's change wakes it, if nothing else does.
   bool NeedsOneThatRests(const RuleInstance& instance) const {
     if (instance.open) return false;
-    for (const int slot : needs_[instance.rule]) {
-      const InstanceId needed = instance.references[static_cast<std::size_t>(slot)];
-      if (needed != kNone && !instances_[needed].awake && !instances_[needed].open) return true;
+    for (const Need& need : needs_[instance.rule]) {
+      const InstanceId index = instance.references[static_cast<std::size_t>(need.slot)];
+      if (index == kNone || instances_[index].awake) continue;
+      const RuleInstance& needed = instances_[index];
+      if (need.truth ? !needed.open : needed.open && needed.certain && !needed.in_gap) return true;
     }
     return false;
   }
@@ -408,8 +410,14 @@ class RuleInstances {
   InstanceIndex<PairKey> touches_;  // the instances of kTouchingRule
   IdVector<RuleId, std::vector<std::pair<RuleId, int>>>
       guarded_;  // the rules that a rule guards, and by which of their references
-  IdVector<RuleId, std::vector<int>>
-      needs_;  // `while`: references that must be true for it to begin
+  struct Need {
+    int slot = kNone;
+    bool truth = true;
+  };
+  static void CollectNeeds(const Program& program, NodeId index, bool truth,
+                           std::vector<Need>& needs);
+  IdVector<RuleId, std::vector<Need>>
+      needs_;  // what references must be for it to begin, or to lead on
   IdVector<RuleId, std::vector<std::vector<bool>>> fits_;  // by role and entity
   std::vector<std::vector<Watch>> pose_watchers_;          // by entity
   std::vector<std::vector<Watch>> grip_watchers_;

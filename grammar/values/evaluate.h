@@ -213,8 +213,8 @@ class Evaluator {
     int a = kNoEntity, b = kNoEntity;
     std::vector<OverPart> parts;
   };
-  static constexpr std::size_t kLastOver = 128;  ///< a power of two
-  mutable std::vector<LastOver> last_over_;      ///< empty until the first one
+  static constexpr std::size_t kLastOver = 1024;  ///< a power of two
+  mutable std::vector<LastOver> last_over_;       ///< empty until the first one
 };
 
 }  // namespace prehend::grammar
