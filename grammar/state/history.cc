@@ -10,7 +10,7 @@
 namespace prehend::grammar {
 namespace {
 
-constexpr double kRounding = 1e-6;  // of a product of seconds and ticks per second
+constexpr double kRounding = 1e-6;  // of a product of seconds and ticks per second; of metres
 constexpr double kMaxTracedTicks = 1e15;
 constexpr double kFar_m = 1e3;
 
@@ -61,6 +61,24 @@ void History::Move(int entity, const EntitySample& to) {
   way.place = to;
 }
 
+// A hand carries its surface along; how far it gets beyond that is its way, too.
+void History::MoveSurface(int hand, const std::vector<CollisionSphere>& to) {
+  const EntitySample& look = Look(hand, now());
+  std::vector<CollisionSphere>& surface_B = ways_m_[hand].surface_B;
+  double away_m = to.size() == surface_B.size() ? 0 : kFar_m;
+  surface_B.resize(to.size());
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    CollisionSphere sphere = to[i];
+    sphere.p_W_m = look.q_WB.conjugate() * (to[i].p_W_m - look.p_WB_m);
+    const double step_m = (sphere.p_W_m - surface_B[i].p_W_m).norm() +
+                          std::abs(sphere.radius_m - surface_B[i].radius_m);
+    if (step_m <= kRounding) continue;
+    away_m = std::max(away_m, sphere.p_W_m.norm() <= kArm_m ? step_m : kFar_m);
+    surface_B[i] = sphere;
+  }
+  ways_m_[hand].way_m += away_m;
+}
+
 // A bound for all of its points: what turns by an angle moves them by at most four times the sine
 // of a quarter of it, which is half the distance of the quaternions, times their distance from the
 // origin.
@@ -87,6 +105,7 @@ void History::SetHand(const HandSample& look, std::uint64_t crossed_thresholds, 
   sample.collision_spheres.assign(look.collision_spheres.begin(), look.collision_spheres.end());
   sample.look.collision_spheres = {};
   sample.crossed_thresholds = crossed_thresholds;
+  if (!ways_m_.empty()) MoveSurface(look.entity, sample.collision_spheres);
   hands_[index].GiveBack();
 }
 

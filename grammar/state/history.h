@@ -144,7 +144,8 @@ class History {
   }
   /// How far the entity has moved so far, without its trembling: between two frames no point of it
   /// within kArm_m or Bound_m() of its origin gets farther than the difference and Tremble_m(), nor
-  /// does it turn by more than that per kArm_m. Where it is lost or found it counts as far.
+  /// does it turn by more than that per kArm_m. Where it is lost or found it counts as far. Of
+  /// a hand this holds for its collision spheres, too.
   double Way_m(int entity) const { return ways_m_[entity].way_m; }
   /// 0 as long as it has never moved.
   double Tremble_m(int entity) const { return ways_m_[entity].moved ? 2 * kTremble_m : 0; }
@@ -168,10 +169,12 @@ class History {
     double way_m = 0;
     EntitySample place;
     bool moved = false;
+    std::vector<CollisionSphere> surface_B = {};  ///< of a hand, as seen from it
   };
   static constexpr double kTremble_m = 0.005;
 
   void Move(int entity, const EntitySample& to);
+  void MoveSurface(int hand, const std::vector<CollisionSphere>& to);
   double StepOf(int entity, const EntitySample& from, const EntitySample& to) const;
 
   double ticks_per_second_;

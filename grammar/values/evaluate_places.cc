@@ -211,7 +211,7 @@ bool Evaluator::NeedsNearness(NodeId index) const {
     return AreOrigins(program_, node.args[0], node.args[1]) && is_number(node.args[2]);
   if (!IsAtMost(node) || !is_number(node.args[1])) return false;
   const Node& value = program_.nodes[node.args[0]];
-  return IsAbsoluteClearance(program_, value) ||
+  return IsAbsoluteClearance(program_, value) || value.op == Op::kGap ||
          (value.op == Op::kDistance && AreOrigins(program_, value.args[0], value.args[1]));
 }
 
@@ -254,6 +254,8 @@ double Evaluator::OutOfReach_m(const Node& node, RuleInstance& instance, FrameNu
   const double most_m = number(node.args[1]);
   if (value.op == Op::kDistance)
     return (origin(value.args[0]) - origin(value.args[1])).norm() - most_m;
+  if (value.op == Op::kGap)  // a hand without a surface may get one
+    return std::min(Gap(Entity(value, view, 0), Entity(value, view, 1), frame), 100.0) - most_m;
   const Node& clearance = program_.nodes[value.args[0]];
   return OffTop_m(Entity(clearance, view, 0), Entity(clearance, view, 1), most_m, frame);
 }
@@ -328,7 +330,7 @@ double Evaluator::TrueFor_m(NodeId index, RuleInstance& instance, FrameNumber fr
   if (value.op == Op::kDistance) {
     const std::optional<double> distance_m = Compute(value, view);
     left_m = distance_m ? most_m - *distance_m : 0;
-  } else {
+  } else if (value.op != Op::kGap) {  // which is 0 before a hand is shown
     const Node& clearance = program_.nodes[value.args[0]];
     left_m = OnTop_m(Entity(clearance, view, 0), Entity(clearance, view, 1), most_m, frame);
   }

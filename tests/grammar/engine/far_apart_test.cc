@@ -43,6 +43,14 @@ class Walk {
     for (EntitySample& look : looks_) look.p_WB_m = Step(0.25);
   }
 
+  /// Fingers open and close now and then.
+  HandSample Hand() {
+    if (random_() % 60 == 0) finger_ = Step(0.1);
+    const EntitySample& look = shown_[0];
+    spheres_ = {{look.p_WB_m, 0.02}, {look.p_WB_m + look.q_WB * finger_, 0.01}};
+    return {.entity = 0, .collision_spheres = spheres_};
+  }
+
   const std::vector<EntitySample>& Next() {
     shown_.clear();
     for (int i = 0; i < kEntities; ++i) {
@@ -71,6 +79,8 @@ class Walk {
   std::mt19937 random_;
   std::vector<EntitySample> looks_, shown_;
   std::vector<double> speeds_;
+  Eigen::Vector3d finger_ = {0, 0, 0.1};
+  std::vector<CollisionSphere> spheres_;
   bool lost_[kEntities] = {};
 };
 
@@ -81,7 +91,9 @@ struct Found {
 };
 
 void ExpectTheSame(const std::string& condition, const std::string& form) {
-  const std::string head = "(a: Entity, b: Thing) ", opposite = "not (not (" + condition + "))";
+  const bool is_of_hands = condition.find("gap") != std::string::npos;
+  const std::string head = is_of_hands ? "(a: Hand, b: Thing) " : "(a: Entity, b: Thing) ";
+  const std::string opposite = "not (not (" + condition + "))";
   const auto put = [&](const std::string& what) {
     std::string text = form;
     return text.replace(text.find('@'), 1, what);
@@ -99,7 +111,8 @@ void ExpectTheSame(const std::string& condition, const std::string& form) {
     for (Tick tick = 0; tick < 400; ++tick) {
       std::vector<EntitySample> looks = walk.Next();
       looks[0].v_WB_m_per_s.x() = tick % 17 == 0 ? 20 : 0;
-      monitor.Advance({.tick = 10 * tick, .entities = looks}, out);
+      const HandSample hand = walk.Hand();
+      monitor.Advance({.tick = 10 * tick, .entities = looks, .hands = {&hand, 1}}, out);
     }
     monitor.Finish(4000, out);
     ASSERT_EQ(monitor.error(), "");
@@ -120,7 +133,8 @@ TEST(FarApart, WhoRestsMissesNothing) {
         "abs(clearance(a, b)) <= 5 cm", "abs(clearance(b, a)) < 3 cm",
         "distance(a, b) < 30 cm or abs(clearance(a, b)) <= 5 cm",
         "height(a) > -1 m and (inside(a, b) or in_sphere(b, position(a), 10 cm))",
-        "speed(b, 60 ms) > 1 cm/s and distance(a, b) < 30 cm"}) {
+        "speed(b, 60 ms) > 1 cm/s and distance(a, b) < 30 cm", "gap(a, b) <= 4 cm",
+        "gap(a, b) < 10 cm and distance(a, b) < 40 cm"}) {
     const bool is_of_entities = condition.find("clearance") == std::string::npos;
     for (const std::string form : {"while @", "while @ bridging 50 ms lasting 20 ms",
                                    "while @ until distance(a, b) > 50 cm"})
