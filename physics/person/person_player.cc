@@ -182,7 +182,8 @@ void PersonPlayer::Yield(Yielding& motion, double resistance_n) const {
   // Resistance in the solver grows with speed, so the pace is divided by the excess. It then grows
   // back exponentially from where it was: a resistance that was met at a slow pace is met at a slow
   // pace again.
-  constexpr double kGrow_s = 0.1, kMinPace = 0.01;
+  // It begins again so slowly that what stays is not moved by all that she tries.
+  constexpr double kGrow_s = 0.1, kMinPace = 1e-5;
   const double dt_s = 1.0 / scene_.world.rate_hz;
   if (!motion.max_force_n) return;
   motion.pace = resistance_n > *motion.max_force_n

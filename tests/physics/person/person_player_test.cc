@@ -48,9 +48,10 @@ struct Played {
   std::uint64_t hash = 0;
   bool touched = false;  ///< the block by this part
 };
-Played Play(const Scene& scene, std::vector<PersonStep> steps, const std::string& part = "") {
+Played Play(const Scene& scene, std::vector<PersonStep> steps, const std::string& part = "",
+            double settle_s = 0.3) {
   Script script;
-  script.settle_s = 0.3;
+  script.settle_s = settle_s;
   for (PersonStep& step : steps) script.stages.push_back({.steps = {}, .person_steps = {step}});
   Simulation simulation(scene, script);
   Played played;
@@ -158,10 +159,13 @@ TEST(PersonPlayerTest, AWalkYieldsToWhatResistsMoreThanItMayPush) {
   scene.bodies[kBlock].X_WB.p_m.z() = 0.5;
   scene.bodies[kBlock].mass_kg = 60;
   scene.bodies[kBlock].friction = 2;
-  const auto walk = [&](std::optional<double> max_force_n) {
-    return Play(scene, {{0, WalkStep{{0.4, 0}, max_force_n}, 1.5}}).end.bodies[kBlock].X_WB.p_m.x();
+  const auto walk = [&](std::optional<double> max_force_n, double settle_s = 0.3) {
+    const Played played = Play(scene, {{0, WalkStep{{0.4, 0}, max_force_n}, 1.5}}, "", settle_s);
+    return played.end.bodies[kBlock].X_WB.p_m.x();
   };
   EXPECT_LT(walk(60) - 0.4, 0.03) << "the first blow has her speed";
+  for (const double force_n : {1.0, 60.0})
+    EXPECT_LT(walk(force_n, 10) - walk(force_n), 0.0002) << "then it stays, however long she pushes";
   EXPECT_GT(walk(std::nullopt) - 0.4, 0.1);
   scene.bodies[kBlock].mass_kg = 1;
   scene.bodies[kBlock].friction = 0.3;
