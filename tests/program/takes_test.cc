@@ -376,8 +376,8 @@ TEST_F(Takes, LayoutsOfOtherProgramsAreScored) {
   }
   EXPECT_EQ(f1("f.csv", frames, "rate_hz: 10\n"), 1);
   EXPECT_EQ(f1("f.txt", lines, "rate_hz: 10\n"), 1);
-  const auto rated = [&](const std::string& rate) {
-    return Score({take, "--truth", Path("f.txt"), "--map",
+  const auto rated = [&](const std::string& rate, const std::string& name = "f.txt") {
+    return Score({take, "--truth", Path(name), "--map",
                   Write("r.yaml", rate + "labels: {near: {event: near}, SIL: ignore}\n")})
         .err;
   };
@@ -387,6 +387,15 @@ TEST_F(Takes, LayoutsOfOtherProgramsAreScored) {
           "has a line for each frame of the video: rate_hz: 10 in the map\n"),
       "");
   EXPECT_EQ(rated("rate_hz: 10.5\n").find("its lines last"), std::string::npos);
+  for (const char* name : {"f.txt", "f.csv"})
+    EXPECT_EQ(Has(rated("rate_hz: 8\n", name),
+                  name + std::string(": its lines last 6.25 s at 8 per second, the recording 5.00 "
+                                     "s\n  hint: if it has a line for each frame of the video: "
+                                     "rate_hz: 10 in the map\n")),
+              "");
+  EXPECT_EQ(Has(rated("rate_hz: 20\n", "f.csv"), "f.csv: its lines last 2.50 s at 20 per"), "");
+  Write("some.csv", "frame,label\n10,near\n11,near\n12,near\n");  // the others are not named
+  EXPECT_EQ(rated("rate_hz: 10\n", "some.csv").find("its lines last"), std::string::npos);
   EXPECT_EQ(f1("d.csv",
                "begin,end,label\n2026-10-25T02:00:01.0,2026-10-25T02:00:02.0,near\n"
                "2026-10-25T02:00:03.0,2026-10-25T02:00:04.0,near\n",

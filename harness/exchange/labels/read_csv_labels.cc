@@ -281,6 +281,10 @@ class RowTaker {
     for (const auto& [_, begun] : begun_)
       Complain(begun.place.column, fmt::format("'{}' begins and never ends", begun.text),
                begun.place.line);
+    if (columns_.InFrames() && is_each_frame_ && columns_.keys.empty()) {
+      file_.frames_s = (last_frame_ + 1) * columns_.frame->unit_s;
+      file_.rate_hz = 1 / columns_.frame->unit_s;
+    }
     const std::vector<std::size_t> read = columns_.Seats();
     for (std::size_t seat = 0; seat < words_.size(); ++seat)
       if (cells_of_[seat].size() > 1 && std::ranges::count(read, seat) == 0)
@@ -378,6 +382,8 @@ class RowTaker {
                       fmt::format("{}: found '{}', wanted the number of a frame",
                                   words_[columns_.frame->seat], cell.text),
                       line_);
+    is_each_frame_ = is_each_frame_ && *frame <= last_frame_ + 1;
+    last_frame_ = std::max(last_frame_, *frame);
     if (label.text.empty()) return;  // nothing happens in this frame
     label.begin_s = *frame * columns_.frame->unit_s;
     label.end_s = (*frame + 1) * columns_.frame->unit_s;
@@ -398,6 +404,8 @@ class RowTaker {
   std::vector<std::set<std::string>> cells_of_;  ///< per column, of those that may tell takes: two
   std::map<SameLabel, Label> begun_;
   std::map<SameLabel, std::pair<double, std::size_t>> last_;  ///< frame, and index of its label
+  double last_frame_ = 0;
+  bool is_each_frame_ = true;  ///< none is left out
   Diagnostics problems_;
   int line_ = 1;
 };

@@ -57,7 +57,7 @@ struct LabelFile {
   std::size_t backward = 0;          ///< labels that end before they begin, which were left out
   std::vector<Label> empty;          ///< those without text, which were left out
   bool has_header = true;            ///< without labels, it says that nothing happened
-  double frames_s = 0, rate_hz = 0;  ///< of lines for frames at the map's rate: how long they last
+  double frames_s = 0, rate_hz = 0;  ///< of lines for all frames: how long they last, their rate
   /// Of a table: keys of rows with neither times nor a label, which say that of a take.
   std::set<std::vector<std::string>> nothing_in;
   grammar::Diagnostics warnings;

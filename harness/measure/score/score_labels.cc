@@ -47,7 +47,7 @@ Result<EpisodeToScore> Labelled(episode::Episode& episode, const episode::Take& 
                         .offset_s = truths.rows(index).offset_s};
 }
 
-/// Labels by frame that last less than this share of their take are doubted.
+/// Labels by frame that last less than this share of their take, or it of them, are doubted.
 constexpr double kFramesCover = 0.9;
 
 /// Without a recording there is no rate.
@@ -235,7 +235,9 @@ std::string RateWarning(const exchange::LabelReading& truths, std::size_t take, 
   const std::size_t at = truths.files().empty() ? 0 : truths.rows(take).file;
   if (at >= truths.files().size()) return "";
   const exchange::LabelFile& file = truths.files()[at];
-  if (file.frames_s == 0 || file.frames_s > kFramesCover * take_s) return "";
+  if (file.frames_s == 0 ||
+      (file.frames_s > kFramesCover * take_s && take_s > kFramesCover * file.frames_s))
+    return "";
   return fmt::format(
       "warning: {}: its lines last {:.2f} s at {:g} per second, the recording {:.2f} s\n"
       "  hint: if it has a line for each frame of the video: rate_hz: {:.3g} in the map\n",

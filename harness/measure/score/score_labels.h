@@ -62,7 +62,8 @@ Result<LabelScores> ScoreLabelFiles(const LabelFilesRequest& request, std::strin
 void AddFound(const grammar::Timeline& found, std::size_t take,
               const exchange::LabelReading& truths, double collar_s, EpisodeToScore& labelled);
 
-/// Whether lines for frames end long before their take, so that the rate of the map may be wrong.
+/// Whether lines for frames end long before their take, or long after it: then the rate of the map
+/// may be wrong.
 std::string RateWarning(const exchange::LabelReading& truths, std::size_t take, double take_s);
 /// Where labels are found if they are moved: lines, or "".
 std::string ClockWarning(const std::string& grammar, const std::vector<EpisodeToScore>& episodes,
