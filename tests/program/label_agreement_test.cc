@@ -62,6 +62,33 @@ TEST_F(Agreement, CollarsOfEachEventAreMeasured) {
   EXPECT_NE(text.out.find(line), std::string::npos) << text.out;
 }
 
+TEST_F(Agreement, CollarsOfEventsArePooledAndTheLineIsForAMap) {
+  // As `resegment -o` writes them; and labels whose names need quotes.
+  const auto rows = [&](const char* name, double later_s, const std::string& one,
+                        const std::string& other) {
+    return File(
+        name, std::to_string(0.5 + later_s) + ",1.2," + one + ",right\n3,4," + other + ",right\n");
+  };
+  const std::string held = "\"grasping(right_hand, cup)\"", also = "\"grasping(left_hand, pot)\"",
+                    map = (folder_ / "map.yaml").string();
+  for (const auto& [one, other, line, labels] :
+       {std::tuple{held, also, "collar_ms: {grasping: 200}", "labels: {hold: {event: grasping}}"},
+        {std::string("\"pick up, then\""), std::string("hold"),
+         R"(collar_ms: {"pick up, then": 200, hold: 1})",
+         R"(labels: {hold: {event: grasping}, "pick up, then": {event: picking_up}})"}}) {
+    const std::string anna = rows("anna.csv", 0, one, other),
+                      ben = rows("ben.csv", 0.2, one, other);
+    const Said said = Prehend({"score", ben, "--truth", anna});
+    ASSERT_NE(said.out.find(std::string("in a map: ") + line), std::string::npos) << said.out;
+    WriteFile(map, std::string(labels) + "\n" + line + "\n");
+    WriteFile(folder_ / "hold.csv", "begin_s,end_s,label\n1,2,hold\n");
+    const std::string hold = (folder_ / "hold.csv").string();
+    const Said pasted =
+        Prehend({"score", hold, "--truth", hold, "--map", map, "--grammar", "pick_and_place"});
+    EXPECT_EQ(pasted.exit_code, 0) << pasted.err;
+  }
+}
+
 TEST_F(Agreement, KappaIsOfFrames) {
   // Of 10 s 4 s are marked by both, 1 s by each alone: 0.8 agree, 0.5 by chance.
   const std::string anna = File("a.csv", "0,5,hold,right\n9.9,10,rest,right\n"),

@@ -472,6 +472,16 @@ TEST_F(Takes, CollarsAreOfSingleEvents) {
   EXPECT_EQ(collar_f("", {}), 0);
   EXPECT_EQ(collar_f("collar_ms: {near: 250}\n", {}), 1);
   EXPECT_EQ(collar_f("collar_ms: {near: 250}\n", {"--collar-ms", "100"}), 0);
+  // A label means its event; of two the larger one counts.
+  Write("l.csv", "begin_s,end_s,label\n1.2,2.2,by it\n");
+  const std::string also = "labels: {by it: {event: near}, at it: {event: near}}\ncollar_ms: ";
+  for (const auto& [collars, f] : {std::pair{"{by it: 250, at it: 9}", 1}, {"{at it: 90}", 0}}) {
+    const std::string map = Write("m.yaml", also + collars + "\n");
+    EXPECT_EQ(Json({take, "--truth", labels, "--map", map})["grammars"][0]["total"]["collar_f"], f);
+  }
+  const Said unknown =
+      Score({take, "--truth", labels, "--map", Write("m.yaml", also + "{by ti: 250}\n")});
+  EXPECT_EQ(Has(unknown.err, "the grammar has no event 'by ti'"), "");
 }
 
 }  // namespace

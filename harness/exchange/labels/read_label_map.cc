@@ -35,8 +35,6 @@ class MapReader {
           ReadNumber(take, map_.offsets_s[take.key], "seconds", false);
       else if (node.key == "offset_s")
         ReadNumber(node, map_.offset_s, "seconds", false);
-      else if (node.key == "collar_ms")
-        ReadCollars(node);
       else if (node.key == "starts_at")
         ReadStart(node);
       else if (node.key == "join_s")
@@ -53,7 +51,7 @@ class MapReader {
         ReadVideo(node);
       else if (node.key == "tiers")
         ReadTiers(node);
-      else if (node.key != "labels")
+      else if (node.key != "labels" && node.key != "collar_ms")
         errors_.AddUnknownName(
             node.key_where, "unknown key '" + node.key + "'", node.key,
             {"version", "labels", "tiers", "offset_s", "starts_at", "join_s", "collar_ms",
@@ -63,6 +61,7 @@ class MapReader {
       ReadLabelNodes(*labels);
     else
       errors_.Add(root.where, "'labels' is missing", kExample);
+    if (const YamlNode* collars = root.Find("collar_ms")) ReadCollars(*collars);
     return errors_.Sorted();
   }
 
@@ -79,6 +78,7 @@ class MapReader {
                                           positive ? ", more than 0" : "", Describe(node)));
   }
 
+  /// Of an event, or of a label that means it; of several the largest.
   void ReadCollars(const YamlNode& collars) {
     if (!IsMapping(collars)) return;
     std::vector<std::string> names;
@@ -86,8 +86,12 @@ class MapReader {
     for (const YamlNode& node : collars.children) {
       double milliseconds = 0;
       ReadNumber(node, milliseconds, "milliseconds", true);
-      map_.collars_s[node.key] = milliseconds / 1000;
-      if (std::ranges::count(names, node.key) == 0)
+      const bool is_event = std::ranges::count(names, node.key) > 0;
+      const auto label = map_.labels.find(node.key);
+      const bool is_label = !is_event && label != map_.labels.end() && !label->second.ignored;
+      double& collar_s = map_.collars_s[is_label ? label->second.event : node.key];
+      collar_s = std::max(collar_s, milliseconds / 1000);
+      if (!is_event && !is_label)
         errors_.AddUnknownName(node.key_where, "the grammar has no event '" + node.key + "'",
                                node.key, names);
     }

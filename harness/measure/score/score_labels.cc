@@ -7,8 +7,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "grammar/contents.h"
@@ -108,6 +110,17 @@ std::vector<Together> Grouped(const std::vector<episode::Take>& takes, const std
     group->takes.push_back(i);
   }
   return groups;
+}
+
+/// In a map: of "grasping(right_hand, cup)" its event; else the label, in quotes if it needs them.
+std::string KeyOf(const std::string& label) {
+  const auto is_plain = [](char c) {
+    return c == '_' || std::isalnum(static_cast<unsigned char>(c));
+  };
+  const auto end = std::ranges::find_if_not(label, is_plain);
+  const std::string name(label.begin(), end);
+  if (end == label.end() || (!name.empty() && *end == '(' && label.ends_with(')'))) return name;
+  return nlohmann::json(label).dump();
 }
 
 /// Scores one source after another.
@@ -306,13 +319,16 @@ std::string LabelScoresText(const LabelScores& scores, double collar_s, bool dif
     for (const EventScore& event : score.events)
       text += fmt::format(" {} {:.2f},", event.event, event.frames.Kappa());
     text += fmt::format(" all {:.2f}\n", score.total.frames.Kappa());
-    std::string collars;  // 95 % of the boundaries of an event are at most so far apart
-    for (const EventScore& event : score.events) {
-      TimeErrors both = event.begin;
-      both.seconds.insert(both.seconds.end(), event.end.seconds.begin(), event.end.seconds.end());
+    std::map<std::string, TimeErrors> boundaries;  // 95 % of these are at most so far apart
+    for (const EventScore& event : score.events)
+      for (const TimeErrors* errors : {&event.begin, &event.end})
+        std::ranges::copy(errors->seconds,
+                          std::back_inserter(boundaries[KeyOf(event.event)].seconds));
+    std::string collars;
+    for (const auto& [key, both] : boundaries) {
       if (both.seconds.empty()) continue;
       const double apart_ms = 1000 * std::abs(both.QuantileByMagnitude(0.95));
-      collars += fmt::format("{}{}: {:g}", collars.empty() ? "" : ", ", event.event,
+      collars += fmt::format("{}{}: {:g}", collars.empty() ? "" : ", ", key,
                              std::max(1.0, std::ceil(apart_ms - 1e-6)));
     }
     text += fmt::format("in a map: collar_ms: {{{}}}  # 95 % of the boundaries of {}\n", collars,
