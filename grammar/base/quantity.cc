@@ -5,6 +5,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <numbers>
 
 namespace prehend::grammar {
@@ -49,6 +51,13 @@ Dimension Quotient(const Dimension& a, const Dimension& b) {
   return {a.length - b.length, a.time - b.time, a.force - b.force, a.angle - b.angle};
 }
 
+double AsWritten(double value) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.11e", value);
+  const double written = std::strtod(digits, nullptr);
+  return std::abs(value - written) <= 1e-15 * std::abs(value) ? written : value;
+}
+
 const Unit* FindUnit(std::string_view name) {
   for (const Unit& unit : kUnits) {
     if (unit.name == name) return &unit;
@@ -89,20 +98,13 @@ std::string QuantityText(const Quantity& quantity) {
 
 std::string ReadableQuantityText(const Quantity& quantity) {
   constexpr std::size_t kMostDigits = 12;
-  constexpr double kSteps = 1e6;  // numbers that people write have no more digits
-  const std::string in_si = QuantityText(quantity);
-  const std::string dimension = DimensionText(quantity.dimension);
-  if (Digits(quantity.value).size() <= kMostDigits) return in_si;
-  for (const Unit& unit : kUnits) {
-    // "m/s" in "cm/s": the first word is the one that is replaced.
-    const std::string base = DimensionText(unit.dimension);
-    const bool is_first = dimension == base || dimension.starts_with(base + "/");
-    if (!is_first) continue;
-    const double number = std::round(quantity.value / unit.si * kSteps) / kSteps;
-    if (number * unit.si == quantity.value)
-      return Digits(number) + " " + std::string(unit.name) + dimension.substr(base.size());
-  }
-  return in_si;
+  constexpr double kDegree = std::numbers::pi / 180;
+  const std::string in_si = QuantityText(quantity), unit = DimensionText(quantity.dimension);
+  const double degrees = AsWritten(quantity.value / kDegree);
+  if (Digits(quantity.value).size() <= kMostDigits || !unit.starts_with("rad") ||
+      degrees * kDegree != quantity.value)
+    return in_si;
+  return Digits(degrees) + " deg" + unit.substr(3);
 }
 
 }  // namespace prehend::grammar

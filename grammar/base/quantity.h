@@ -47,13 +47,17 @@ struct Quantity {
   Dimension dimension;
 };
 
+/// 0.57 for 570 * 0.001, 0.3 for 0.1 + 0.2: a number of at most 12 digits that is next to it, or
+/// else `value`.
+double AsWritten(double value);
+
 /// "m/s", "a plain number": for messages.
 std::string DimensionText(const Dimension& dimension);
 
 /// "0.25 m", "0.3": the value in SI units, shortest form that reads back as the same number.
 std::string QuantityText(const Quantity& quantity);
 
-/// The same for people: "35 cm", where that reads as 0.35000000000000003 m.
+/// The same for people: "20 deg", where that reads as 0.3490658503988659 rad.
 std::string ReadableQuantityText(const Quantity& quantity);
 
 }  // namespace prehend::grammar

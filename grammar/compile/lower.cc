@@ -421,7 +421,7 @@ Lowering::Typed Lowering::LowerArithmetic(Op op, const Typed& left, const Typed&
                WithParams(expr.args[1], "divide by something else"));
   }
   if (a.op == Op::kNumber && b.op == Op::kNumber)
-    return NumberNode(Calculate(op, a.number, b.number), dimension, expr.place);
+    return NumberNode(AsWritten(Calculate(op, a.number, b.number)), dimension, expr.place);
   return {.node = Add({.op = op, .args = {left.node, right.node, kNone, kNone}}),
           .type = Type::kNumber,
           .dimension = dimension};

@@ -233,7 +233,7 @@ void ExpressionParser::ParseUnit(Quantity& quantity) {
   if (!starts && !(At("/") && AtUnit(1))) return;
   double si = 1;
   quantity.dimension = ParseDimension(si);
-  quantity.value *= si;
+  quantity.value = AsWritten(quantity.value * si);
 }
 
 Dimension ExpressionParser::ParseDimension(double& si) {

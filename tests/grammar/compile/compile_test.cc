@@ -131,6 +131,23 @@ TEST(Compile, WarnsOfWhatSaysNothingButMayBeMeant) {
                 "  hint: use 'or', or change one of the bounds\n");
 }
 
+// 570 ms and 0.57 s, 0.1 + 0.2 and 0.3 are the same, although their products and sums are not.
+TEST(Compile, ComparesNumbersAsTheyAreWritten) {
+  const CompileResult result = CompileText(
+      "grammar g\nparam s = 0.1 s\nparam t = 0.2 s\n"
+      "event a(h: Hand, x: Thing) while touching(h, x) lasting 570 ms to 0.57 s\n"
+      "event b(h: Hand, x: Thing) while touching(h, x) lasting s + t to 0.3 s\n"
+      "event c(h: Hand, x: Thing) from touching(h, x) begins to touching(h, x) ends within 0.57 s "
+      "lasting 570 ms\n"
+      "event d(h: Hand) while trigger(h) >= 0.1 + 0.2 and trigger(h) <= 0.3\n"
+      "event e(h: Hand, x: Thing) while touching(h, x) lasting 571 ms to 0.57 s\n");
+  EXPECT_EQ(Format(result.diagnostics),
+            "g:8:67: error: no interval lasts that long and no longer than this\n"
+            "  event e(h: Hand, x: Thing) while touching(h, x) lasting 571 ms to 0.57 s\n"
+            "                                                                    ^\n"
+            "  hint: the shorter time stands first: lasting 1 s to 2 s\n");
+}
+
 std::string Times(const std::string& text, int times) {
   std::string all;
   for (int i = 0; i < times; ++i) all += text;
