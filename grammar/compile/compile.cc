@@ -260,7 +260,7 @@ class Compiler {
     if (definition.form == Definition::Form::kRepeat && definition.gap)
       rule.As<WhileRule>().at_least = 1;
     const std::size_t before = diagnostics_.size();
-    CheckRoles(source, definition.roles);
+    CheckRoles(source, definition.roles, definition.is_event);
     CheckSymmetry(source, definition);
     if (diagnostics_.size() != before) {
       symbols_.rules.erase(definition.name);
@@ -424,7 +424,9 @@ class Compiler {
                   [this](const auto& define) { return symbols_.broken.contains(define.first); });
   }
 
-  void CheckRoles(const Source& source, const std::vector<ast::Role>& roles) {
+  void CheckRoles(const Source& source, const std::vector<ast::Role>& roles, bool printed = false) {
+    static const std::set<std::string_view> kOfGoldens = {"tolerance", "because", "oracle",
+                                                          "accepted",  "spread",  "open_end"};
     if (roles.size() > kMaxRoles) {
       Complain(source, roles[kMaxRoles].place, "more than " + std::to_string(kMaxRoles) + " roles");
     }
@@ -432,6 +434,10 @@ class Compiler {
     for (const ast::Role& role : roles) {
       if (!names.insert(role.name).second)
         Complain(source, role.place, "the role '" + role.name + "' is named twice");
+      if (printed && kOfGoldens.contains(role.name))
+        Complain(source, role.place,
+                 "'" + role.name + "' means something in goldens and cannot be a role of an event",
+                 "choose another name");
       if (symbols_.IsParamIn(source.text.file, role.name)) {
         Complain(source, role.place, "'" + role.name + "' is a parameter and cannot be a role too",
                  "call one of them otherwise");
