@@ -49,6 +49,7 @@ Engine::Engine(std::shared_ptr<const Program> program, EntityTable entity_table)
     past_.LookBack(rule, history_);
     nearness_.push_back(NearnessOf(rule));
     follows_.push_back(WhenItFollows(rule));
+    skips_by_.push_back(SkipsBy(rule));
     const auto* from_to = rule.If<FromToRule>();
     begins_by_others_.push_back(from_to != nullptr && AsksOnlyOthers(from_to->from));
     const auto* looks_back = rule.If<UntilSinceRule>();

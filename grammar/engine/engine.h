@@ -204,6 +204,8 @@ class Engine final {
   bool AsksForTheNearest(const Rule& rule) const;
   bool IsUnknownUntilTheEnd(NodeId node) const;
   Follows WhenItFollows(const Rule& rule) const;
+  NodeId SkipsBy(const Rule& rule) const;
+  bool SkipAhead(RuleInstance& instance);
   bool MayFollow(RuleInstance& instance, FrameNumber resumes);
   bool Follow(RuleInstance& instance);
   FrameNumber KnownOf(InstanceId follower);
@@ -298,12 +300,14 @@ class Engine final {
   IdVector<RuleId, RuleTicks> rule_ticks_;
   IdVector<RuleId, NodeId>
       nearness_;  // a condition that entities far apart do not fulfil, or kNone
+  IdVector<RuleId, NodeId> skips_by_;  // see SkipAhead()
   IdVector<RuleId, Follows> follows_;
   IdVector<RuleId, char> begins_by_others_;    // `from ..` that asks for no entities
   IdVector<RuleId, char> leads_always_;        // `since ..` that is not known before the end
   IdVector<RuleId, int> turns_;                // when a rule is stepped in a frame
   IdVector<InstanceId, Following> following_;  // up to the last one that ever did
   bool some_may_rest_ = false;
+  bool seen_only_ = false;      // nobody is asked how far it is known
   bool asks_followers_ = true;  // how far they are known; else that is guessed, at most too far
   IdVector<RuleId, std::vector<InstanceId>> may_rest_;  // followers to be looked at in that turn
   IdVector<RuleId, std::vector<InstanceId>> ahead_;     // followers that look at entities, too

@@ -113,6 +113,55 @@ Engine::Follows Engine::WhenItFollows(const Rule& rule) const {
   return follows;
 }
 
+// What tells how far its steps would get if nothing that it asks about begins or ends, or kNone.
+NodeId Engine::SkipsBy(const Rule& rule) const {
+  const auto asks_for = [&](NodeId index, Op op) { return AsksFor(*program_, index, op); };
+  if (!program_->waits || !rule.anchors.empty()) return {};
+  if (const auto* looks_back = rule.If<UntilSinceRule>()) {
+    const Node& until = program_->nodes[looks_back->until];
+    const bool is_simple = (until.op == Op::kBegins || until.op == Op::kEnds) &&
+                           program_->nodes[until.args[0]].op == Op::kHolds &&
+                           program_->nodes[looks_back->since].op == Op::kOr &&
+                           IsUnknownUntilTheEnd(looks_back->since);
+    return is_simple ? until.args[0] : NodeId();
+  }
+  const auto* holds = rule.If<WhileRule>();
+  const bool is_simple = holds != nullptr && holds->at_least == 0 && holds->until == kNone &&
+                         AsksOnlyOthers(holds->condition) &&
+                         !asks_for(holds->condition, Op::kBegins) &&
+                         !asks_for(holds->condition, Op::kEnds);
+  return is_simple ? holds->condition : NodeId();
+}
+
+// Steps that would find nothing new need not be made. False if something else must be looked at.
+// Nobody is asked whom the steps would not ask.
+bool Engine::SkipAhead(RuleInstance& instance) {
+  const NodeId asks = skips_by_[instance.rule];
+  if (asks == kNone || log_ != nullptr || finishing_ || instance.in_gap || instance.next < 2 ||
+      (instance.open && !instance.certain) || !instance.pending.empty())
+    return false;
+  const bool looks_back = RuleOf(instance).form() == Form::kUntilSince;
+  FrameNumber seen = kNever;  // how far those who follow others have been asked
+  for (std::size_t slot = 0; slot < instance.references.size(); ++slot) {
+    const InstanceId index = instance.references[slot];
+    if (index == kNone && instances_.CanRefer(instance, static_cast<int>(slot))) return false;
+    if (index == kNone) continue;
+    const RuleInstance& other = instances_[index];
+    if (NextEdge(other, instance.next - 2) != kNever) return false;
+    if (other.follows && !looks_back) seen = std::min(seen, other.known);
+  }
+  seen_only_ = !looks_back;
+  const auto [holds, known] = BoundOf(asks, instance);
+  seen_only_ = false;
+  const FrameNumber now = history_.now();
+  if (known < instance.next || std::min(known, now) >= seen ||
+      (!looks_back && holds != instance.open))
+    return false;
+  instance.next = std::min(known, now + 1);
+  instance.by_itself = false;
+  return true;
+}
+
 // It found nothing new in the frame before its next one, and nothing of what it asks about begins
 // or ends from there on, as far as that is known.
 bool Engine::MayFollow(RuleInstance& instance, FrameNumber resumes) {
@@ -359,7 +408,9 @@ Engine::Bound Engine::BoundOf(InstanceId index) const {
   const RuleInstance& other = instances_[index];
   const bool is_guessed =
       other.follows && !asks_followers_ && RuleOf(other).form() != Form::kUntilSince;
-  return {other.open && other.certain, is_guessed ? history_.now() : instances_.KnownOf(other)};
+  return {other.open && other.certain, is_guessed   ? history_.now()
+                                       : seen_only_ ? other.known
+                                                    : instances_.KnownOf(other)};
 }
 
 // Of a condition: what it is as long as others go on as they are, and up to where that is known.

@@ -11,7 +11,8 @@ namespace prehend::grammar {
 
 void Engine::StepInstance(RuleInstance& instance) {
   if (RuleOf(instance).form() == Form::kCompose) return StepCompose(instance);
-  while (instance.next <= history_.now() && StepFrame(instance)) SkipUnchanged(instance);
+  const bool skips = SkipAhead(instance);
+  while (!skips && instance.next <= history_.now() && StepFrame(instance)) SkipUnchanged(instance);
   if (!instance.pending.empty()) ResolvePending(instance);
   UpdateKnown(instance);
 }

@@ -278,6 +278,11 @@ class RuleInstances {
   InstanceId Find(RuleId rule, const Binding& entities) const {
     return Find(Canonical(rule, entities));
   }
+  /// Whether the entities of a reference fit.
+  bool CanRefer(const RuleInstance& instance, int slot) const {
+    const InstanceKey key = Referred(instance, slot);
+    return Fits(key.rule, key.entities);
+  }
   InstanceId FindTouch(int a, int b) const { return touches_.Find(PairKey(a, b)); }
   /// Prefetches an instance that is about to be used.
   void Fetch(InstanceId instance) const {

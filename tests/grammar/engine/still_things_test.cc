@@ -13,6 +13,7 @@
 
 #include "grammar/replay_monitor.h"
 #include "tests/grammar/corpus.h"
+#include "tests/grammar/scene.h"
 #include "tests/grammar/thorough.h"
 
 namespace prehend::grammar {
@@ -124,6 +125,40 @@ std::vector<Found> Sorted(const std::vector<Event>& events, bool decided) {
 int Stories(int usual) {
   const char* const more = std::getenv("STORIES");
   return more == nullptr ? usual : std::atoi(more);
+}
+
+// The cup goes 1 m/s from 1 s to 1.5 s. At 1.5 s it has gone 5 cm in the window of 100 ms, at 1.51
+// s 4 cm, which is known when that window is over. Nobody who asks for it in turn knows it later.
+TEST(StillThings, WhatWindowsSayIsToldInTime) {
+  const auto program = testing::CompileText(R"(grammar t
+condition fast(a: Thing) while speed(a, 100 ms) > 45 cm/s
+condition high(a: Thing) while height(a) > 1 m
+condition moves(a: Thing) while fast(a) or high(a)
+event trip(a: Thing) while moves(a) and not high(a)
+event stop(a: Thing) from moves(a) begins to moves(a) ends
+event soon(a: Thing) from trip(a) begins to trip(a) ends within 2 s
+event late(a: Thing) from trip(a) begins to trip(a) ends within 0.2 s
+event gone(a: Thing) until moves(a) ends since fast(a) or distance(position(a), position(a)@end) < 1 cm at most 1 s back
+)");
+  ASSERT_TRUE(program);
+  testing::Scene scene;
+  Monitor monitor(program, scene.entity_table);
+  std::vector<Event> out;
+  for (Tick tick = 0; tick < 3000; tick += 10) {
+    scene.looks[1].p_WB_m.x() = 0.001 * static_cast<double>(std::clamp<Tick>(tick - 1000, 0, 500));
+    scene.looks[2].p_WB_m.y() = tick % 20 == 0 ? 0.0004 : 0;  // the tray trembles
+    monitor.Advance(scene.At(tick), out);
+  }
+  monitor.Finish(3000, out);
+  std::vector<std::string> found;
+  for (const Event& event : out) {
+    found.push_back(program->rules[event.rule].name + " of " + std::to_string(event.roles[0]) +
+                    " [" + std::to_string(event.interval.begin) + "," +
+                    std::to_string(event.interval.end) + ") at " + std::to_string(event.decided));
+  }
+  EXPECT_EQ(found, (std::vector<std::string>{
+                       "trip of 1 [1000,1510) at 1560", "stop of 1 [1000,1510) at 1560",
+                       "soon of 1 [1000,1510) at 1560", "gone of 1 [1000,1510) at 1560"}));
 }
 
 TEST(StillThings, CostNoEvent) {
