@@ -484,5 +484,37 @@ TEST_F(Takes, CollarsAreOfSingleEvents) {
   EXPECT_EQ(Has(unknown.err, "the grammar has no event 'by ti'"), "");
 }
 
+// Labels are events of the first grammar that is named; others may have fewer.
+TEST_F(Takes, AGrammarWithoutTheEventOfALabelMissesIt) {
+  const std::string take = Recording("a", {{1, 2}}),
+                    labels = Write("l.csv", "begin_s,end_s,label\n1,2,near\n"), map = map_;
+  Write("grammars/far.grammar",
+        "grammar far\nevent far(hand: Hand, cup: Thing) while distance(hand, cup) < 10 cm\n");
+  for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--map", map}}) {
+    std::vector<std::string> words = {take,   "--truth",   labels, "--grammar",
+                                      "near", "--grammar", "far"};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto both = Json(words)["grammars"];
+    EXPECT_EQ(both[0]["total"]["f1_50"], 1);
+    EXPECT_EQ(both[0]["not_covered"], nlohmann::json::array());
+    EXPECT_EQ(both[1]["total"]["true"], 1);
+    EXPECT_EQ(both[1]["total"]["found"], 0);
+    EXPECT_EQ(both[1]["not_covered"], nlohmann::json::array({"near"}));
+    EXPECT_EQ(both[1]["ignored"], nlohmann::json({{"far", 1}}));
+    EXPECT_EQ(Has(Score(words).out, "not covered: near (1 true); "), "");
+    words.insert(words.begin(), "report");
+    words.insert(words.end(), {"-o", Path("page.html")});
+    EXPECT_EQ(Do(words).exit_code, 0) << Do(words).err;
+    // The other way round the event is nobody's.
+    words = {take, "--truth", labels, "--grammar", "far", "--grammar", "near"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Said said = Score(words);
+    EXPECT_EQ(said.exit_code, 2);
+    EXPECT_EQ(
+        Has(said.err, "labels are events of the first grammar (far): name one that has it first\n"),
+        "");
+  }
+}
+
 }  // namespace
 }  // namespace prehend::house

@@ -160,12 +160,7 @@ class LabelScorer {
     PREHEND_TRY(const auto settings, episode::ParameterSettings(request_.settings));
     const grammar::CompileResult compiled = opener_.Compile(names.front(), group.asked, settings);
     if (!compiled.program) return tl::unexpected(compiled.diagnostics);
-    PREHEND_TRY(
-        const auto truths,
-        request_.first_is_truth
-            ? exchange::NothingMarked(group.takes.size(), *compiled.program)
-            : exchange::ReadTruths(request_.takes, request_.label_files, request_.asking.label_map,
-                                   *compiled.program, request_.backward, group.takes));
+    PREHEND_TRY(const auto truths, TruthsOf(group, names.front(), settings, compiled));
     if (const std::string strange = exchange::WarningsOf(truths);
         is_first && said_.insert(strange).second)
       warnings_ += strange;
@@ -215,7 +210,33 @@ class LabelScorer {
     scores_.collars_s = request_.is_collar_asked ? Collars{} : truths.collars_s();
     AddScores(name, std::move(all), request_.collar_s, scores_.collars_s, scores_);
     scores_.of_grammars.back().set = scores_.by_hand.back().set = group.set;
+    const std::vector<std::string> own = grammar::EventNames(*compiled.program);
+    for (const auto& [event, _] : truths.compared())
+      if (!foreign && std::ranges::count(own, event) == 0)
+        scores_.of_grammars.back().not_covered.push_back(event);
     return {};
+  }
+
+  /// Labels are events of the first grammar that is named.
+  Result<exchange::LabelReading> TruthsOf(const Together& group, const episode::EpisodeName& name,
+                                          const grammar::Overrides& settings,
+                                          const grammar::CompileResult& compiled) {
+    if (request_.first_is_truth)
+      return exchange::NothingMarked(group.takes.size(), *compiled.program);
+    const std::string whose = request_.asking.WhoseEvents();
+    const grammar::CompileResult first =
+        whose.empty() || whose == group.asked ? compiled : opener_.Compile(name, whose, settings);
+    if (!first.program) return tl::unexpected(first.diagnostics);
+    auto truths =
+        exchange::ReadTruths(request_.takes, request_.label_files, request_.asking.label_map,
+                             *first.program, request_.backward, group.takes);
+    if (truths || request_.asking.sources.size() < 2) return truths;
+    for (grammar::Diagnostic& one : truths.error())
+      if (one.message.find("the grammar") != std::string::npos)
+        one.hint +=
+            fmt::format("{}labels are events of the first grammar ({}): name one that has it first",
+                        one.hint.empty() ? "" : "; ", GrammarName(*first.program));
+    return truths;
   }
 
   /// Each is opened once, also for several grammars.
