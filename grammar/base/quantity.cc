@@ -5,8 +5,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <numbers>
 
 namespace prehend::grammar {
@@ -53,8 +51,10 @@ Dimension Quotient(const Dimension& a, const Dimension& b) {
 
 double AsWritten(double value) {
   char digits[32];
-  std::snprintf(digits, sizeof digits, "%.11e", value);
-  const double written = std::strtod(digits, nullptr);
+  const auto [end, problem] =
+      std::to_chars(digits, digits + sizeof digits, value, std::chars_format::scientific, 11);
+  double written = value;
+  std::from_chars(digits, end, written);
   return std::abs(value - written) <= 1e-15 * std::abs(value) ? written : value;
 }
 

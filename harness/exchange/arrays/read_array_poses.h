@@ -53,10 +53,10 @@ class FoundPoses {
   /// The time among names with values.
   void AddTime(const std::map<std::string, std::vector<std::string>>& values);
 
-  std::string keys;  ///< "frames: .." and "t: ..", a line each
+  std::string keys;                             ///< "frames: .." and "t: ..", a line each
   bool needs_rate = true, is_of_unity = false;  ///< vectors are texts: "(0.1, 0.2, 0.3)"
-  std::vector<FoundBody> bodies;   ///< some have only a rotation
-  std::vector<std::string> aside;  ///< what has as many numbers, and no such name
+  std::vector<FoundBody> bodies;                ///< some have only a rotation
+  std::vector<std::string> aside;               ///< what has as many numbers, and no such name
 };
 
 Result<FoundPoses> FindJsonPoses(const std::string& path);

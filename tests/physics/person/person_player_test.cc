@@ -165,7 +165,8 @@ TEST(PersonPlayerTest, AWalkYieldsToWhatResistsMoreThanItMayPush) {
   };
   EXPECT_LT(walk(60) - 0.4, 0.03) << "the first blow has her speed";
   for (const double force_n : {1.0, 60.0})
-    EXPECT_LT(walk(force_n, 10) - walk(force_n), 0.0002) << "then it stays, however long she pushes";
+    EXPECT_LT(walk(force_n, 10) - walk(force_n), 0.0002)
+        << "then it stays, however long she pushes";
   EXPECT_GT(walk(std::nullopt) - 0.4, 0.1);
   scene.bodies[kBlock].mass_kg = 1;
   scene.bodies[kBlock].friction = 0.3;
