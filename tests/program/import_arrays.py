@@ -275,6 +275,12 @@ def check_proposed():
     said, text = proposed("rows.jsonl", rows, 'cup: {position: "[name=cup].p{x,y,z}"', 'left_hand: {position: "[name=lhand].p{x,y,z}", hand: true',
                           "time_unit: s")
     assert said.returncode == 0 and "frames:" not in text, said.stderr
+    # Angles are no place of something else, and a name ends before "pos".
+    angles = "\n".join(json.dumps({"name": n, "t": t, **{"pos_" + a: at[i][k] for k, a in enumerate("xyz")}, "rpy": [0, 0, 90]})
+                       for i, t in enumerate(TIMES) for n, at in (("cup", CUPS), ("hand", HANDS)))
+    said, text = proposed("angles.ndjson", angles, '  cup: {position: "[name=cup].pos_{x,y,z}", class: Cup,', '  hand: {position: "[name=hand].pos_{x,y,z}", hand: true',
+                          "unit: m ", "# also in the file: [name=cup].rpy, [name=hand].rpy\n")
+    assert said.returncode == 0 and "_rpy" not in text and "is a hand by its name" not in text, (said.stderr, text)
     quest = "\n".join(json.dumps({"time": f"2026-01-31T10:00:{t:09.6f}Z", "LeftHand": {"pos": xyz(HANDS[i]), "rot": dict(zip("xyzw", XYZW))},
                                   "Cup": {"transform": np.vstack([np.c_[MATRIX, CUPS[i]], [0, 0, 0, 1]]).tolist()}}) for i, t in enumerate(TIMES))
     said, text = proposed("quest.jsonl", quest, 'cup: {pose: "Cup.transform"', 'left_hand: {position: "LeftHand.pos", rotation: "LeftHand.rot"', "time_unit: iso")

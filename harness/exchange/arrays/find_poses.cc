@@ -31,13 +31,15 @@ Says PartOfName(std::string& name) {
   const std::string place = "position|pos|translation|location|xyz", pose = "pose|transform|matrix",
                     turn = "quaternion|quat|orientation|rotation|rot";
   static const std::regex kPart("^(?:(.*?)[_. :/-]*)(?:(" + place + ")|(" + turn + ")|(" + pose +
-                                    "))(?:_(?:m|cm|mm|xyzw|wxyz))?$",
+                                    "))(?:_(?:m|cm|mm|xyzw|wxyz))?_?$",
                                 std::regex::icase);
   static const std::regex kLetter("^(?:(.*)[_. :/-])?(?:(p|t)|(q|r))_?$", std::regex::icase);
   static const std::regex kOther(
       "^.*(veloc|accel|normal|direction|extent|colou?r|gravity|force|torque|euler|angle|angular).*$"
       "|"
-      "^(.*[_. -])?(vel|acc|dir|size|dim|dimensions|up|forward|offset|scale)$",
+      "^(.*[_. "
+      "-])?(vel|acc|dir|size|dim|dimensions|up|forward|offset|scale|rpy|ypr|rotvec|rvec|gyro|"
+      "omega)$",
       std::regex::icase);
   std::smatch m;
   const std::string all = name.substr(0, kLongestKey);
