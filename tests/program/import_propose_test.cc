@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tests/program/import_csv.h"
@@ -287,6 +288,53 @@ TEST(ImportPropose, NoMapWithoutColumnsAndNothingIsReplaced) {
     EXPECT_NE(refused.err.find(why), std::string::npos) << other << refused.err;
     EXPECT_FALSE(fs::exists(map)) << other;
   }
+}
+
+// One body with markers on its slanted lid: no plane that things rest on.
+TEST(ImportPropose, MarkersOfOneBodyAreNoThingsOnAPlane) {
+  std::string csv = "t";
+  for (const char* name : {"box1", "box2", "box3", "box4", "box5", "hand"})
+    for (const char* axis : {"_x", "_y", "_z"}) csv += "," + std::string(name) + axis;
+  csv += "\n";
+  for (int i = 0; i < 180; ++i) {
+    csv += std::to_string(i / 30.0);
+    for (const auto& [x, y] :
+         {std::pair(0.0, 0.0), {0.3, 0.0}, {0.0, 0.3}, {0.3, 0.3}, {0.15, 0.1}})
+      csv +=
+          "," + std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(0.8 + 0.5 * x);
+    csv += "," + std::to_string(0.3 + 0.5 * std::sin(i / 30.0)) + ",0.1,1.1\n";
+  }
+  const auto folder = FreshFolder("propose");
+  WriteFile(folder / "a.csv", csv);
+  const Said said = Prehend({"import", (folder / "a.csv").string(), "--propose"});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_NE(said.out.find("are these markers of one body?"), std::string::npos) << said.out;
+  EXPECT_EQ(said.out.find(" rest"), said.out.find(" rests\n")) << said.out;  // the guessed table
+}
+
+TEST(ImportPropose, LandmarksOfAHandAreOneHand) {
+  std::string csv = "time,hand,landmark,x,y,z\n";
+  for (int i = 0; i < 90; ++i) {
+    const std::string t = std::to_string(i / 30.0),
+                      x = std::to_string(0.2 + 0.3 * std::sin(i / 30.0));
+    for (const char* side : {"Right", "Left"})
+      for (int k = 0; k <= 20; ++k)
+        csv += t + "," + side + "," + std::to_string(k) + "," + x + "," + std::to_string(0.01 * k) +
+               (side[0] == 'R' ? ",1.1\n" : ",1.3\n");
+    csv += t + ",obj,cup,0.2,0.3,0.8\n";
+  }
+  const auto folder = FreshFolder("propose");
+  const std::string map = Proposed(folder, "a.csv", csv);
+  for (const char* line : {"  right_hand: {from: \"Right/9\", hand: true, size_m: unknown}\n",
+                           "  left_hand: {from: \"Left/9\", hand: true, size_m: unknown}\n",
+                           "  obj_cup: {from: \"obj/cup\", class: ObjCup, size_m: unknown}\n"})
+    EXPECT_NE(map.find(line), std::string::npos) << map;
+  EXPECT_EQ(map.find("right_0"), std::string::npos) << map;
+  // Those that no map mentions are one line.
+  const Said said = ImportCsv(folder, csv, map);
+  EXPECT_NE(said.err.find("warning: the file has 'Right/0', 'Right/1', "), std::string::npos);
+  EXPECT_NE(said.err.find(" and 20 more, which the map does not mention\n"), std::string::npos)
+      << said.err;
 }
 
 TEST(ImportPropose, TakesOfAFolderWithOneMap) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <span>
 
 #include "grammar/base/diagnostic.h"
 #include "grammar/base/frame.h"
@@ -156,8 +157,12 @@ class Importer {
     if (!errors_.empty()) return tl::unexpected(errors_.Sorted());
     WarnOfNoOrientations();
     WarnOfSizes();
-    for (const std::string& body : file_.unused)
-      Warn(fmt::format("the file has '{}', which the map does not mention", body));
+    constexpr std::size_t kMostNamed = 20;
+    const std::size_t unused = file_.unused.size(), named = std::min(unused, kMostNamed);
+    if (unused > 0)
+      Warn(fmt::format("the file has '{}'{}, which the map does not mention",
+                       fmt::join(std::span(file_.unused).first(named), "', '"),
+                       unused > named ? fmt::format(" and {} more", unused - named) : ""));
     for (const std::string& note : file_.notes) Warn(note);
     return std::move(imported_);
   }

@@ -107,8 +107,10 @@ class MapProposer {
     const auto is_bone = [](const FoundBody& body) { return IsBone(WordsIn(body.called)); };
     const bool all_bones = std::ranges::all_of(found.bodies, is_bone);
     std::set<std::string> taken;
+    for (const FoundBody& body : found.bodies) ++alike_[StemOf(body.called)];
     for (const FoundBody& body : found.bodies) {
-      if (body.From().empty() || bodies_.size() >= kMostEntities || (!all_bones && is_bone(body))) {
+      if (body.From().empty() || bodies_.size() >= kMostEntities || (!all_bones && is_bone(body)) ||
+          IsLandmark(body.called)) {
         aside_.push_back(body.From().empty() ? body.rotation : body.From());
         continue;
       }
@@ -175,10 +177,11 @@ class MapProposer {
     const bool has_skeleton = std::ranges::count_if(names, [](const std::string& name) {
                                 return IsBone(WordsIn(name));
                               }) >= 5;
+    for (const std::string& name : names) ++alike_[StemOf(name)];
     for (const std::string& name : names) {
       const Words words = WordsIn(name);
       if (name.size() > kLongestName || bodies_.size() >= kMostEntities ||
-          (has_skeleton && IsBone(words)))
+          (has_skeleton && IsBone(words)) || IsLandmark(name))
         aside_.push_back(name);
       else
         bodies_.push_back(DraftOf(name, taken));
@@ -188,23 +191,41 @@ class MapProposer {
     return {};
   }
 
+  /// "Right/" of "Right/9".
+  static std::string StemOf(const std::string& name) {
+    return name.substr(0, name.find_last_not_of("0123456789") + 1);
+  }
+
+  /// A hand has many: its middle finger's knuckle, the ninth, stands for it.
+  bool IsLandmark(const std::string& name) const {
+    constexpr std::size_t kLandmarks = 21;
+    const std::string stem = StemOf(name);
+    return stem != name && alike_.at(stem) >= kLandmarks && name != stem + "9" &&
+           AnyOf(WordsIn(stem), {"left", "right", "hand"});
+  }
+
   /// "cup_1, cup_2, cup_3" without orientations may be one body.
   void DoubtMarkers() {
     std::map<std::string, std::vector<std::string>> groups;
-    for (const Draft& body : bodies_) {
-      const std::size_t end = body.from.find_last_not_of("0123456789");
-      if (end + 1 < body.from.size())
-        groups[body.from.substr(0, end + 1)].push_back(Quoted(body.from));
+    for (const Draft& body : bodies_)
+      if (const std::string stem = StemOf(body.from); stem != body.from)
+        groups[stem].push_back(Quoted(body.from));
+    for (const auto& [name, markers] : groups) {
+      if (markers.size() < 3) continue;
+      has_markers_ = true;
+      doubts_.push_back(
+          fmt::format("are these markers of one body? markers: [{}], in the place "
+                      "of from, gives it orientations",
+                      fmt::join(markers, ", ")));
     }
-    for (const auto& [name, markers] : groups)
-      if (markers.size() >= 3)
-        doubts_.push_back(
-            fmt::format("are these markers of one body? markers: [{}], in the place "
-                        "of from, gives it orientations",
-                        fmt::join(markers, ", ")));
   }
 
   Draft DraftOf(const std::string& from, std::set<std::string>& taken) {
+    if (const std::string stem = StemOf(from); alike_[stem] > 20 && IsLandmark(stem + "0")) {
+      Draft draft = DraftOf(stem + "hand", taken);
+      draft.from = from;
+      return draft;
+    }
     const std::size_t last = from.find_last_of("[:");
     Words words = WordsIn(last == std::string::npos ? from : from.substr(last + 1));
     const bool is_side = words.size() == 1 && (words[0] == "left" || words[0] == "right");
@@ -358,7 +379,8 @@ class MapProposer {
       return;
     }
     for (const std::string& warning : imported->warnings)
-      if (!warning.starts_with("size_m is unknown") && !warning.ends_with("does not mention"))
+      if (!warning.starts_with("size_m is unknown") && !warning.ends_with("does not mention") &&
+          !(has_markers_ && warning.find(" rest") != warning.npos))  // each alone rests on nothing
         imported_.push_back(warning);
     summary_ = fmt::format("{:.1f} s, {} frames", imported->duration_s, imported->frames);
   }
@@ -442,7 +464,9 @@ class MapProposer {
   std::string head_, summary_, table_, order_, keys_;
   std::string unit_ = "unit: m", unit_why_ = "not in the file", axes_ = "axes: z_up",
               axes_why_ = "not in the file";
-  bool says_unit_ = false, needs_rate_ = false, zeros_ = false, hands_ = false;
+  bool says_unit_ = false, needs_rate_ = false, zeros_ = false, hands_ = false,
+       has_markers_ = false;
+  std::map<std::string, std::size_t> alike_;  ///< how many names differ by a number in the end
   std::vector<Draft> bodies_;
   std::vector<std::string> aside_, doubts_, imported_;
 };
