@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 std::string Proposed(const fs::path& folder, const std::string& file, const std::string& bytes) {
   WriteFile(folder / file, bytes);
   const std::string poses = (folder / file).string(), map = (folder / "first.yaml").string();
+  fs::remove(map);
   const Said said = Prehend({"import", poses, "--propose", "-o", map});
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_EQ(said.err, "");
@@ -290,6 +291,23 @@ TEST(ImportPropose, NoMapWithoutColumnsAndNothingIsReplaced) {
   }
 }
 
+TEST(ImportPropose, AMapThatSomebodyChangedIsNotReplaced) {
+  const auto folder = FreshFolder("propose");
+  const std::string poses = (folder / "a.csv").string(), map = (folder / "m.yaml").string();
+  WriteFile(poses, MotiveCsv({}));
+  const std::vector<std::string> propose = {"import", poses, "--propose", "-o", map};
+  EXPECT_EQ(Prehend(propose).exit_code, 0);
+  EXPECT_EQ(Prehend(propose).exit_code, 0);  // it is the same
+  WriteFile(map, ReadFile(map) + "# filled in\n");
+  const Said said = Prehend(propose);
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_NE(said.err.find(map + " is there, and has another content: wanted a new name, or - to "
+                                "print"),
+            std::string::npos)
+      << said.err;
+  EXPECT_TRUE(ReadFile(map).ends_with("# filled in\n"));
+}
+
 // One body with markers on its slanted lid: no plane that things rest on.
 TEST(ImportPropose, MarkersOfOneBodyAreNoThingsOnAPlane) {
   std::string csv = "t";
@@ -345,14 +363,19 @@ TEST(ImportPropose, TakesOfAFolderWithOneMap) {
     WriteFile(folder / "takes" / (name + std::string(".csv")), MotiveCsv({}));
   WriteFile(folder / "takes" / "c.csv", MotiveCsv({}).substr(0, 9000));
   WriteFile(folder / "takes" / "notes.md", "Lunch at noon.\n");
+  WriteFile(folder / "takes" / "e.csv", "Lunch at noon.\n");
   WriteFile(map, FilledIn(Proposed(folder, "first.csv", MotiveCsv({}))));
   const std::string out = (folder / "out").string();
   const Said said = Prehend({"import", takes, "--map", map, "-o", out});
   EXPECT_EQ(said.exit_code, 1) << said.err;
-  EXPECT_NE(said.err.find("left out: "), std::string::npos) << said.err;
-  EXPECT_NE(said.err.find("c.csv:"), std::string::npos) << said.err;
+  // Each with its reasons, one after the other.
+  const std::size_t cut = said.err.find("prehend: left out: " + takes + "/c.csv:\n"),
+                    other = said.err.find("prehend: left out: " + takes + "/e.csv:\n");
+  EXPECT_NE(other, std::string::npos) << said.err;
+  EXPECT_LT(said.err.find("is the file cut off?", cut), other) << said.err;
   EXPECT_NE(said.out.find("\na        301     5.00     0.00\n"), std::string::npos) << said.out;
-  EXPECT_NE(said.out.find("3 of 4 takes; left out: " + takes + "/c.csv"), std::string::npos)
+  EXPECT_NE(said.out.find("3 of 5 takes; left out: " + takes + "/c.csv, " + takes + "/e.csv"),
+            std::string::npos)
       << said.out;
   for (const char* name : {"a", "b", "d"})
     EXPECT_TRUE(fs::exists(folder / "out" / (name + std::string(".jsonl"))));
@@ -376,6 +399,9 @@ TEST(ImportPropose, TakesOfAFolderWithOneMap) {
   EXPECT_EQ(mixed.exit_code, 1);
   EXPECT_NE(mixed.err.find("demonstrations in HDF5 are imported alone"), std::string::npos)
       << mixed.err;
+  const Said file = Prehend({"import", takes, "--map", map, "-o", out + ".csv"});
+  EXPECT_NE(file.err.find("of several takes it is a folder or NAME.episodes"), std::string::npos);
+  EXPECT_FALSE(fs::exists(out + ".csv"));
   // A map that is wrong for all.
   WriteFile(map, "import: 1\naxes: y_up\nentities:\n  mug: {from: Mug, size_m: [0.1, 0.1, 0.1]}\n");
   EXPECT_EQ(Prehend({"import", takes, "--map", map, "-o", out + "2"}).exit_code, 2);

@@ -12,6 +12,7 @@
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/content_hash.h"
 #include "harness/base/base/quoting.h"
+#include "harness/base/base/text_file.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/episodes/database.h"
 #include "harness/episode/episodes/record_episode.h"
@@ -147,15 +148,20 @@ ExitCode ImportBatch(const Batch& batch, const ParsedOptions& options,
   std::set<std::string> taken;
   ExitCode exit_code = ExitCode::kAgrees;
   const auto leave_out = [&](const std::string& name, const std::string& why) {
-    warnings.Say("prehend: left out: " + why);
+    const std::string text = "prehend: left out: " + why;
+    if (batch.file.empty())
+      context.err << text << "\n";
+    else
+      warnings.Say(text);
     if (std::exchange(last, name) != name)
       left_out += (left_out.empty() ? "; left out: " : ", ") + name;
   };
   for (const std::string& name : batch.names) {
     auto imported = batch.import(name);
     if (!imported) {
+      if (batch.file.empty()) leave_out(name, name + ":\n" + grammar::Format(imported.error()));
       for (const grammar::Diagnostic& error : imported.error())
-        leave_out(name, batch.file.empty() ? grammar::Format({error}) : error.message);
+        if (!batch.file.empty()) leave_out(name, error.message);
       continue;
     }
     episode::Recording& episode = imported->episode;
@@ -237,8 +243,9 @@ ExitCode ImportTakes(const std::vector<std::string>& typed, const ParsedOptions&
   if (output == "-") return Refuse(context, "several takes do not go to standard output");
   if (const auto read = ReadYamlFile(map); !read) return Complain(context, read.error());
   if (!output.empty() && !episode::IsEpisodeFile(output)) {
-    std::filesystem::create_directories(output, error);
-    if (!std::filesystem::is_directory(output, error))
+    const bool is_file = output.ends_with(".jsonl") || exchange::IsNamedAsPoses(output);
+    if (!is_file) std::filesystem::create_directories(output, error);
+    if (is_file || !std::filesystem::is_directory(output, error))
       return Refuse(context,
                     fmt::format("-o {}: of several takes it is a folder or NAME.episodes", output));
   }
@@ -256,6 +263,11 @@ ExitCode ProposeMap(const std::string& poses, const ParsedOptions& options,
     context.out << *map;
     return ExitCode::kAgrees;
   }
+  std::error_code error;
+  const auto there = ReadTextFile(output);
+  if (std::filesystem::exists(output, error) && !(there && *there == *map))
+    return Refuse(context,
+                  output + " is there, and has another content: wanted a new name, or - to print");
   AtomicFile file(output);
   if (!file.problem().empty()) return Refuse(context, file.problem());
   file.stream() << *map;
@@ -290,6 +302,10 @@ ExitCode RunImport(const ParsedOptions& options, const CommandContext& context) 
     return Refuse(context, fmt::format("{} needs --map, a file that says what it means "
                                        "(docs/motion-capture.md); --propose writes a first one",
                                        poses));
+  if (!check && output != "-" && !output.ends_with(".jsonl") && !episode::IsEpisodeFile(output))
+    return Refuse(context, fmt::format("-o {}: of poses it is NAME.jsonl, NAME.episodes or -; of "
+                                       "that, 'episode export' writes other files",
+                                       output));
   if (exchange::PoseFormatOf(poses) == exchange::PoseFormat::kHdf5)
     return ImportDemonstrations(poses, options, context);
   auto imported = exchange::ImportPoses(poses, options.Text("--map"));
