@@ -106,9 +106,9 @@ class ExpectedEvent {
     if (!who.empty()) return "that can be " + who;
     // The one has a class of one's own without the usual one, or the usual one only.
     const std::string &is = ClassesOf(roles_[role]).front(), &wanted = event_.classes[role];
-    if (IsUsualClass(is) && IsUsualClass(wanted)) return "the drawing has none";
+    if (IsRootClass(is) && IsRootClass(wanted)) return "the drawing has none";
     std::string both = is + ":is=" + wanted;
-    if (IsUsualClass(wanted)) both = (wanted == "Thing" ? "Movable" : wanted) + ":is=" + is;
+    if (IsRootClass(wanted)) both = (wanted == "Thing" ? "Movable" : wanted) + ":is=" + is;
     return "the drawing has none; an entity may be of several classes: " + roles_[role] + ":" +
            both;
   }

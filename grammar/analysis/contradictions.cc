@@ -62,8 +62,7 @@ const std::vector<std::string>& BuiltinClasses() {
 }
 
 bool IsBuiltinClass(std::string_view name) {
-  return std::find(BuiltinClasses().begin(), BuiltinClasses().end(), name) !=
-         BuiltinClasses().end();
+  return std::ranges::count(BuiltinClasses(), name) > 0;
 }
 
 bool ClassesMeet(std::string_view a, std::string_view b) {

@@ -17,7 +17,7 @@ namespace prehend::grammar {
 
 // The classes that the language knows, and which of them exclude or imply each other. Nothing is
 // known about a class of any other name; scenarios have more that are built in
-// (IsScenarioBuiltinClass). Tested by tests/grammar/compile/compile_test.cc
+// (IsRootClass). Tested by tests/grammar/compile/compile_test.cc
 
 const std::vector<std::string>& BuiltinClasses();
 bool IsBuiltinClass(std::string_view name);

@@ -5,11 +5,14 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "grammar/base/solid.h"
@@ -49,6 +52,23 @@ struct EntityInfo {
   double strength_n =
       0;  ///< hands only: the weight that it can lift; 0: not known, it lifts everything
 };
+
+/// Whether it is one of the classes that an entity has by what it is; nobody declares these.
+inline bool IsRootClass(std::string_view name) {
+  constexpr std::array<std::string_view, 15> kRoots = {
+      "Entity",   "Thing",  "Movable",  "Fixed",  "Jointed",    "Attached", "Hand", "Person",
+      "BodyPart", "Grains", "Abstract", "Region", "GazeTarget", "Camera",   "Light"};
+  return std::ranges::find(kRoots, name) != kRoots.end();
+}
+
+/// Of the classes that somebody gives an entity the first that is a root, but none of its `own`;
+/// "" if there is none.
+inline std::string WrongRoot(const std::vector<std::string>& given,
+                             const std::vector<std::string>& own) {
+  for (const std::string& name : given)
+    if (IsRootClass(name) && std::ranges::find(own, name) == own.end()) return name;
+  return "";
+}
 
 struct EntityTable {
   Tick ticks_per_second = 480;

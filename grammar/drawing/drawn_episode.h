@@ -98,9 +98,6 @@ std::vector<DrawnFact> FactsOf(const EntityInfo& entity);
 /// Why this can never be said of the entity; empty: it can.
 std::string WhyNever(const DrawnFact& fact, const EntityInfo& entity);
 
-/// "Movable", "Hand", "Person", ..: a class that entities have by themselves; others are one's own.
-bool IsUsualClass(const std::string& name);
-
 /// The values that the fact sets, named so that two facts that set the same one have the same name:
 /// "cup x", "cup table lie". At most one row can do so in a column.
 std::vector<std::string> ValuesSetBy(const DrawnFact& fact, const std::string& who,

@@ -77,12 +77,6 @@ std::string WhyNever(const DrawnFact& fact, const EntityInfo& entity) {
   return {};
 }
 
-bool IsUsualClass(const std::string& name) {
-  return IsAmong(name,
-                 {"Entity", "Thing", "Movable", "Fixed", "Jointed", "Attached", "Hand", "Person",
-                  "BodyPart", "Grains", "Abstract", "Region", "GazeTarget", "Camera", "Light"});
-}
-
 std::vector<std::string> ValuesSetBy(const DrawnFact& fact, const std::string& who,
                                      const std::string& whom) {
   const std::string both = who < whom ? who + " " + whom : whom + " " + who;

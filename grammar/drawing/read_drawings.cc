@@ -61,6 +61,9 @@ EntityInfo Member(const std::string& name, const std::string& class_name) {
   if (class_name == "Movable" || class_name == "Fixed" || class_name == "Jointed" ||
       class_name == "Attached")
     member.classes.emplace_back("Thing");
+  if (class_name == "Region" || class_name == "GazeTarget" || class_name == "Camera" ||
+      class_name == "Light")
+    member.classes.emplace_back("Abstract");
   if (class_name == "Hand") member.sensor_sets = {"fingers", "thumb", "palm"};
   member.classes.emplace_back("Entity");
   return member;
@@ -215,6 +218,11 @@ class Reader {
       if (!IsClassName(name))
         return Complain(column, Quoted(name) + " is no name of a class",
                         "for example: knife:Movable:is=Knife+Tool");
+      if (!WrongRoot({name}, member.classes).empty())
+        return Complain(column,
+                        Quoted(name) + " is built in, and " + Quoted(member.name) + " is " +
+                            WithArticle(member.classes.front()),
+                        "write it before 'is=' instead: " + member.name + ":" + name);
       if (std::ranges::count(member.classes, name) == 0) member.classes.push_back(name);
       column += name.size() + 1;
     }

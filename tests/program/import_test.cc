@@ -240,6 +240,8 @@ TEST(Import, EveryFaultIsFoundAndNamedAndNothingIsWritten) {
        "map.yaml:8:9: error: no column is called 'tt'"},
       {"no such body", Csv(), Replaced(kCupMap, "from: Mug", "from: Mugg"),
        "map.yaml:14:15: error: 'Mugg' has 0 poses in the file"},
+      {"a built-in class", Csv(), Replaced(kCupMap, "class: Cup", "class: Hand"),
+       "map.yaml:14:27: error: class: 'Hand' is built in, and 'cup' is Movable\n"},
       {"no such key", Csv(), Replaced(kCupMap, "unit: m", "units: m"), "did you mean 'unit'?"},
       {"a column twice", Replaced(Csv(), "t,name,x,y,z", "t,name,x,y,x"), kCupMap,
        "poses.csv:1:12: error: a second column is called 'x'"},

@@ -260,7 +260,7 @@ scenario::Scenario PlaceholderFor(const EpisodeHeader& header) {
                                         : places[static_cast<std::size_t>(entity.part_of)].body);
     for (std::size_t i = 1; i < entity.classes.size(); ++i) {
       const std::string& below = entity.classes[i - 1];
-      if (scenario::IsScenarioBuiltinClass(below)) break;
+      if (grammar::IsRootClass(below)) break;
       if (std::ranges::find(scenario.base_classes, below, &scenario::BaseClass::name) ==
           scenario.base_classes.end())
         scenario.base_classes.push_back({below, entity.classes[i]});

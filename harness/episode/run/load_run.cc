@@ -248,7 +248,7 @@ void WarnOfUnknownNames(const std::vector<grammar::NameInSource>& names,
                         const std::set<std::string>& known, std::string_view message,
                         const std::string& remedy, grammar::Diagnostics& warnings) {
   for (const grammar::NameInSource& named : names) {
-    if (known.contains(named.name) || scenario::IsScenarioBuiltinClass(named.name)) continue;
+    if (known.contains(named.name) || grammar::IsRootClass(named.name)) continue;
     const bool is_number = named.name.find_first_not_of("0123456789") == std::string::npos;
     const std::string near =
         is_number ? "" : grammar::NearestName(named.name, {known.begin(), known.end()});

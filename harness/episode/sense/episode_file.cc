@@ -12,8 +12,6 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "harness/scenario/scenario/scenario.h"
-
 namespace prehend::episode {
 namespace {
 
@@ -26,8 +24,7 @@ bool IsHand(const grammar::EntityInfo& member) { return member.classes.front() =
 
 /// Classes of an entity that is not a hand: its own, its base classes, the built-in ones.
 void AddClasses(const std::vector<std::string>& classes, Json& json) {
-  const auto given =
-      std::find_if(classes.begin() + 1, classes.end(), scenario::IsScenarioBuiltinClass);
+  const auto given = std::find_if(classes.begin() + 1, classes.end(), grammar::IsRootClass);
   json["class"] = classes.front();
   if (given != classes.begin() + 1)
     json["kinds"] = std::vector<std::string>(classes.begin() + 1, given);

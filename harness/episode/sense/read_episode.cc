@@ -171,9 +171,11 @@ class EpisodeReader {
         member.sensor_sets = m.sensor_sets;
         hands_.push_back(static_cast<int>(entity_table.entities.size()) - 1);
       } else {
-        member.classes = ClassesOf(m);
+        member.classes = RootsOf(m);
+        member.classes.insert(member.classes.begin(), m.kinds.begin(), m.kinds.end());
+        member.classes.insert(member.classes.begin(), m.class_name);
       }
-      CheckMember(entry, errors);
+      CheckMember(entry, member.classes, errors);
     }
     CheckParts(header, errors);
     episode.header.bridge_s = header.bridge_s;
@@ -186,12 +188,17 @@ class EpisodeReader {
     has_spheres_.resize(hands_.size());
   }
 
-  static void CheckMember(const Named<MemberEntry>& entry, DiagnosticList& errors) {
+  static void CheckMember(const Named<MemberEntry>& entry, const std::vector<std::string>& classes,
+                          DiagnosticList& errors) {
     const MemberEntry& m = entry.value;
-    const auto add = [&](const std::string& what) {
-      errors.Add(entry.name_where, fmt::format("'{}': {}", entry.name, what));
+    const auto add = [&](const std::string& what, const char* hint = "") {
+      errors.Add(entry.name_where, fmt::format("'{}': {}", entry.name, what), hint);
     };
-    if (!m.hand && m.class_name == "Hand") add("only a hand has the class 'Hand': 'hand: true'");
+    std::vector<std::string> own = RootsOf(m);
+    if (m.person) own.insert(own.end(), {"Person", "BodyPart"});
+    if (const std::string wrong = grammar::WrongRoot(classes, own); !wrong.empty() && !m.hand)
+      add("the class '" + wrong + "' is built in, and by its keys it is " + own[0],
+          "say it by keys, like 'fixed' or 'hand'; name your own classes otherwise");
     if (const std::string twice = Repeated(m.kinds); !twice.empty())
       add("the kind '" + twice + "' is given twice");
     if (const std::string twice = Repeated(m.sensor_sets); !twice.empty())
@@ -238,23 +245,16 @@ class EpisodeReader {
     return grammar::Solid(std::move(parts));
   }
 
-  /// Classes of an entity that is not a hand.
-  static std::vector<std::string> ClassesOf(const MemberEntry& m) {
-    std::vector<std::string> classes = {m.class_name};
-    classes.insert(classes.end(), m.kinds.begin(), m.kinds.end());
-    if (!m.abstract.empty()) {
-      classes.insert(classes.end(), {m.abstract, "Abstract"});
-    } else if (m.grains) {
-      classes.emplace_back("Grains");
-    } else if (!m.person) {
-      classes.insert(classes.end(), {m.fixed      ? "Fixed"
-                                     : m.jointed  ? "Jointed"
-                                     : m.attached ? "Attached"
-                                                  : "Movable",
-                                     "Thing"});
-    }
-    classes.emplace_back("Entity");
-    return classes;
+  /// What an entity that is not a hand is by its keys.
+  static std::vector<std::string> RootsOf(const MemberEntry& m) {
+    if (!m.abstract.empty()) return {m.abstract, "Abstract", "Entity"};
+    if (m.grains) return {"Grains", "Entity"};
+    if (m.person) return {"Entity"};
+    return {m.fixed      ? "Fixed"
+            : m.jointed  ? "Jointed"
+            : m.attached ? "Attached"
+                         : "Movable",
+            "Thing", "Entity"};
   }
 
   /// The entity of this name; otherwise kNoEntity, and an error is reported.

@@ -47,12 +47,8 @@ episode::EpisodeHeader HeaderOf(const MapFile& file, const std::string& poses_pa
       info.classes = {"Hand", "Entity"};
       info.sensor_sets = {"fingers", "thumb", "palm"};
     } else {
-      info.classes = {e.class_name,
-                      e.joint     ? "Jointed"
-                      : e.part_of ? "Attached"
-                      : e.fixed   ? "Fixed"
-                                  : "Movable",
-                      "Thing", "Entity"};
+      info.classes = RootsOf(e);
+      info.classes.insert(info.classes.begin(), e.class_name.value);
     }
   }
   return header;

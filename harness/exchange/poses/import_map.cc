@@ -9,6 +9,7 @@
 #include <cmath>
 #include <set>
 
+#include "grammar/base/frame.h"
 #include "harness/base/base/number_text.h"
 #include "harness/exchange/hdf5/hdf5_file.h"
 
@@ -261,9 +262,14 @@ void CheckMap(const ImportMap& map, PoseFormat format, const YamlNode& root,
           fmt::format("'{}' is part of another thing, so it is no hand, is not fixed and has "
                       "no joint",
                       entity.name));
-    if (e.hand && (e.fixed || e.class_name != "Object"))
+    if (e.hand && (e.fixed || e.class_name.value != "Object"))
       errors.Add(entity.name_where,
                  fmt::format("'{}': a hand has no class and is not fixed", entity.name));
+    else if (!grammar::WrongRoot({e.class_name.value}, RootsOf(e)).empty())
+      errors.Add(e.class_name.where,
+                 fmt::format("class: '{}' is built in, and '{}' is {}", e.class_name.value,
+                             entity.name, RootsOf(e).front()),
+                 "of a hand hand: true, of a table fixed: true; name your own classes otherwise");
     if (e.upright_at_s && e.at_m)
       errors.Add(e.upright_at_s->where, "upright_at_s needs a body with orientations");
     if (e.axes_quat_wxyz && e.at_m)

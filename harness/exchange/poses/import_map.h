@@ -106,7 +106,7 @@ struct MappedEntity {
   Eigen::Vector4d quat_wxyz = {1, 0, 0, 0};
   bool hand = false;
   bool fixed = false;
-  std::string class_name = "Object";
+  Located<std::string> class_name = {"Object", {}};
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
   bool guesses_size = false;  ///< the map says that it is unknown
   /// From the markers' origin to the entity's, in the body's frame, z up, metres.
@@ -119,6 +119,12 @@ struct MappedEntity {
   std::optional<Opening> grip;                    ///< of a hand
   std::optional<Opening> joint;                   ///< of a drawer or a door
 };
+
+/// What it is by its keys, if it is no hand.
+inline std::vector<std::string> RootsOf(const MappedEntity& e) {
+  const char* moves = e.joint ? "Jointed" : e.part_of ? "Attached" : e.fixed ? "Fixed" : "Movable";
+  return {moves, "Thing", "Entity"};
+}
 
 /// Whether the map says how it is turned in its markers' axes.
 inline bool SaysAxes(const MappedEntity& e) { return e.upright_at_s || e.axes_quat_wxyz; }

@@ -125,7 +125,8 @@ ValueFormat<MappedEntity> EntityFormat() {
       .Optional("quat_wxyz", &E::quat_wxyz, UnitQuaternion(), "How it is turned there.")
       .Optional("hand", &E::hand, Flag(), "It is a hand.")
       .Optional("fixed", &E::fixed, Flag(), "It never moves.")
-      .Optional("class", &E::class_name, Word("[A-Z][A-Za-z0-9]*", "a class name like 'Cup'"),
+      .Optional("class", &E::class_name,
+                WithPlace(Word("[A-Z][A-Za-z0-9]*", "a class name like 'Cup'")),
                 "What it is; not of hands.")
       .Required("size_m", &E::size_m, SizeFormat(),
                 "The edges of its bounding box; unknown: as such things often are.")

@@ -154,7 +154,7 @@ ValueFormat<std::string> ColorFormat() {
 }
 
 void CheckClass(const EntityYaml& entity, DiagnosticList& errors) {
-  if (!IsScenarioBuiltinClass(entity.class_name.value)) return;
+  if (!grammar::IsRootClass(entity.class_name.value)) return;
   errors.Add(
       entity.class_name.where,
       "class: '" + entity.class_name.value + "' is a built-in class; entities get it automatically",

@@ -204,7 +204,7 @@ void ValidateClasses(const ScenarioYaml& entry, DiagnosticList& errors) {
   for (const auto& kind : entry.classes) {
     for (const auto& [name, where] :
          {std::pair{kind.name, kind.name_where}, std::pair{kind.value.value, kind.value.where}}) {
-      if (IsScenarioBuiltinClass(name))
+      if (grammar::IsRootClass(name))
         errors.Add(where, fmt::format("classes: '{}' is a built-in class", name),
                    "declare your own classes, for example 'Cup: Container'");
     }

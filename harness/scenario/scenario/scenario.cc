@@ -10,7 +10,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <set>
 
 namespace prehend::scenario {
 namespace {
@@ -115,13 +114,6 @@ std::optional<OwnCamera> ParseOwnCamera(const std::string& text) {
   const bool is_view = camera.view_deg >= kNarrowest_deg && camera.view_deg <= kWidest_deg &&
                        (camera.eye_m - camera.look_at_m).norm() >= kNearest_m;
   return at == end && is_view ? std::optional(camera) : std::nullopt;
-}
-
-bool IsScenarioBuiltinClass(const std::string& name) {
-  static const std::set<std::string> names = {
-      "Entity",   "Thing",  "Movable",  "Fixed",  "Jointed",    "Attached", "Hand", "Person",
-      "BodyPart", "Grains", "Abstract", "Region", "GazeTarget", "Camera",   "Light"};
-  return names.contains(name);
 }
 
 std::vector<std::string> WithBaseClasses(const std::string& class_name,

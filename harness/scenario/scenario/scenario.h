@@ -165,9 +165,6 @@ std::optional<std::string> WhyNoCamera(const Scenario& scenario, const std::stri
 // Classes of entities and their base classes: the built-in ones, and those that a scenario
 // declares. Tested by tests/harness/scenario/resolve/classes_test.cc
 
-/// Whether every scenario has this class; a scenario may not declare one of the same name.
-bool IsScenarioBuiltinClass(const std::string& name);
-
 /// A class and its base classes, the most special first.
 std::vector<std::string> WithBaseClasses(const std::string& class_name,
                                          const std::vector<BaseClass>& base_classes);

@@ -143,6 +143,12 @@ TEST(ReadDrawings, AnEntityMayHaveFurtherClasses) {
             (std::vector<std::string>{"Movable", "Thing", "Entity", "Knife", "Tool"}));
   EXPECT_EQ(all[0].mass_kg, 1);
   EXPECT_EQ(all[1].classes, (std::vector<std::string>{"Fixed", "Thing", "Entity"}));
+  EXPECT_EQ(Said("entities drum:Fixed:is=Bell+Hand\ndrum x |01|\n"),
+            "d.txt:1:29: error: 'Hand' is built in, and 'drum' is a Fixed\n"
+            "  entities drum:Fixed:is=Bell+Hand\n"
+            "                              ^\n"
+            "  hint: write it before 'is=' instead: drum:Hand\n");
+  EXPECT_EQ(Said("entities spot:Region:is=Abstract+Spot\nspot x |01|\n"), "");
   EXPECT_EQ(Said("entities knife:Movable/Knife\nknife x |01|\n"),
             "d.txt:1:16: error: 'Movable/Knife' is no name of a class\n"
             "  entities knife:Movable/Knife\n"

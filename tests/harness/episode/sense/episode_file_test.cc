@@ -228,8 +228,22 @@ TEST(EpisodeFile, WhatCannotBeIsRefused) {
   EXPECT_EQ(complaint(R"("a": {"class": "A", "size_m": [1, 1, 1], "part_of": "b"}, )"
                       R"("b": {"class": "B", "size_m": [1, 1, 1], "part_of": "a"})"),
             "'a' is a part of itself\n");
-  EXPECT_EQ(complaint(R"("a": {"class": "Hand", "size_m": [1, 1, 1]})"),
-            "'a': only a hand has the class 'Hand': 'hand: true'\n");
+  EXPECT_EQ(
+      complaint(R"("a": {"class": "Hand", "size_m": [1, 1, 1]})"),
+      "'a': the class 'Hand' is built in, and by its keys it is Movable | say it by keys, like "
+      "'fixed' or 'hand'; name your own classes otherwise\n");
+  for (const char* wrong : {R"("class": "Fixed")", R"("class": "Region")", R"("kinds": ["Hand"])",
+                            R"("class": "Movable", "fixed": true)", R"("class": "Person")",
+                            R"("abstract": "Region", "class": "Thing")"})
+    EXPECT_NE(complaint(std::string(R"("a": {"size_m": [1, 1, 1], )") + wrong + "}")
+                  .find("is built in, and by its keys it is "),
+              std::string::npos)
+        << wrong;
+  for (const char* right :
+       {R"("class": "Fixed", "fixed": true)", R"("class": "Thing")",
+        R"("class": "Person", "person": true)", R"("abstract": "Region", "class": "Region")",
+        R"("class": "Cup", "kinds": ["Movable"])"})
+    EXPECT_EQ(complaint(std::string(R"("a": {"size_m": [1, 1, 1], )") + right + "}"), "") << right;
   EXPECT_EQ(complaint(R"("a": {"class": "A", "size_m": [1, 1, 1], "kinds": ["B", "B"]})"),
             "'a': the kind 'B' is given twice\n");
   EXPECT_EQ(complaint(R"("h": {"hand": true, "size_m": [1, 1, 1], "sensor_sets": ["t", "t"]})"),
