@@ -231,17 +231,17 @@ class GoldenReader {
       std::string key;
       if (!ReadName(key, "role=value")) return false;
       const bool is_value = !AtEnd() && line_[column_] == '~';
-      if (key != "because" && !written.insert(is_value ? key + "~" : key).second)
+      if ((key != "because" || is_value) && !written.insert(is_value ? key + "~" : key).second)
         return FailAt(word_column, fmt::format("second '{}'", key));
-      if (key == "open_end") {
+      if (is_value) {
+        if (!ReadValue(line, key, word_column)) return false;
+      } else if (key == "open_end") {
         line.event.open_end = true;
       } else if (key == "because") {
         if (!std::exchange(may_explain, false))
           return FailAt(word_column,
                         "'because' gives the reason of a tolerance, but none stands before it");
         if (!ReadReason(line)) return false;
-      } else if (is_value) {
-        if (!ReadValue(line, key, word_column)) return false;
       } else if (AtEnd() || line_[column_] != '=') {
         return Fail(fmt::format("expected '=' after '{}'", key),
                     grammar::NearestName(key, {"open_end"}).empty()
@@ -284,7 +284,7 @@ class GoldenReader {
     const std::string_view word = Word();
     grammar::NamedValue value{.name = name};
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value.value);
-    if (error != std::errc() || !std::isfinite(value.value))
+    if (error != std::errc() || std::isnan(value.value))
       return FailAt(value_column, fmt::format("expected a number after '{}~', like 12.5N", name));
     value.unit = std::string(end, word.data() + word.size());
     if (line.event.values.size() == kMaxRolesInText) return FailAt(word_column, "too many values");

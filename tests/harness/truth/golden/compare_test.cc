@@ -271,6 +271,11 @@ TEST(Compare, ValuesMayDifferALittle) {
   EXPECT_FALSE(CompareEvents(with_force(10), with_force(10.6)).Agrees());
   EXPECT_TRUE(CompareEvents(with_force(0), with_force(0.0009)).Agrees());
   EXPECT_FALSE(CompareEvents(with_force(10), with_force(10, "kN")).Agrees());
+  // The weight of what is fixed.
+  EXPECT_TRUE(CompareEvents(with_force(HUGE_VAL), with_force(HUGE_VAL)).Agrees());
+  EXPECT_FALSE(CompareEvents(with_force(HUGE_VAL), with_force(10)).Agrees());
+  EXPECT_FALSE(CompareEvents(with_force(10), with_force(HUGE_VAL)).Agrees());
+  EXPECT_FALSE(CompareEvents(with_force(HUGE_VAL), with_force(-HUGE_VAL)).Agrees());
   const Comparison gone = CompareEvents(with_force(10), {Event("grasping", "cup", 100, 200)});
   ASSERT_EQ(gone.Count(LineVerdict::kChanged), 1);
   EXPECT_EQ(gone.pairings[0].changes, std::vector<std::string>{"force: 10 N -> none"});

@@ -75,6 +75,16 @@ TEST(Golden, WriterIsCanonicalAndReaderItsInverse) {
   EXPECT_EQ(Read(WriteGolden(golden)), golden);
 }
 
+// What is fixed weighs that much; and a value may be called like a word of the format.
+TEST(Golden, AValueMayBeInfiniteAndHaveAnyName) {
+  Golden golden = Read(kCanonical);
+  golden.events[0].as_written.clear();
+  golden.events[0].event.values = {{"weight", HUGE_VAL, "N"}, {"because", -HUGE_VAL, ""}};
+  const std::string text = WriteGolden(golden);
+  EXPECT_NE(text.find("weight~infN  because~-inf\n"), std::string::npos) << text;
+  EXPECT_EQ(Read(text).events[0].event.values, golden.events[0].event.values);
+}
+
 TEST(Golden, OrderAndSpacingOfAFileDoNotMatter) {
   const Golden golden = Read(
       "# scenario: s/x\n# grammar: g\n# ticks_per_second: 480\n\n"
@@ -133,6 +143,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "4:16: expected '=' after 'cup' | ROLE=NAME without blanks, or open_end"},
         Mistake{"no_value", "contact 1 2 a= b=cup", "4:15: expected a value for 'a'"},
         Mistake{"no_number", "contact 1 2 a=cup force~much",
+                "4:25: expected a number after 'force~', like 12.5N"},
+        Mistake{"nan", "contact 1 2 a=cup force~nanN",
                 "4:25: expected a number after 'force~', like 12.5N"},
         Mistake{"value_twice", "contact 1 2 a=cup force~1N force~2N", "4:28: second 'force'"},
         Mistake{"accepted_by_nobody", "contact 1 2 a=cup accepted=2",
