@@ -276,6 +276,9 @@ TEST(Import, EveryFaultIsFoundAndNamedAndNothingIsWritten) {
     EXPECT_EQ(said.exit_code, 2) << fault.name << "\n" << said.out;
     EXPECT_NE(said.err.find(fault.says), std::string::npos) << fault.name << "\n" << said.err;
     EXPECT_FALSE(std::filesystem::exists(folder / "take.jsonl")) << fault.name;
+    const std::string takes = (folder / "takes.episodes").string();
+    EXPECT_EQ(ImportCsv(folder, fault.csv, fault.map, {"-o", takes}).exit_code, 2) << fault.name;
+    EXPECT_FALSE(std::filesystem::exists(takes)) << fault.name;
   }
 }
 

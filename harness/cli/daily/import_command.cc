@@ -61,8 +61,6 @@ ExitCode WriteRecording(episode::Recording& recording, const std::string& output
                         const std::string& source, const std::string& grammar,
                         const CommandContext& context, OnceEach& warnings) {
   if (episode::IsEpisodeFile(output)) {
-    const auto lock = episode::LockToRecord(output, episode::Writer::kAdds);
-    if (!lock) return Refuse(context, lock.error());
     const auto imported = episode::ImportRecording({.file = output,
                                                     .root = context.root,
                                                     .source = source,
@@ -74,8 +72,7 @@ ExitCode WriteRecording(episode::Recording& recording, const std::string& output
     if (!imported) return Complain(context, imported.error());
     if (imported->was_there)
       warnings.Say(output + ": it has this recording already; it is not added again");
-    if (imported->problem.empty()) return ExitCode::kAgrees;
-    return Complain(context, ExitCode::kFailure, imported->problem);
+    return imported->problem.empty() ? ExitCode::kAgrees : Refuse(context, imported->problem);
   }
   AtomicFile file(output);
   if (!file.problem().empty()) return Refuse(context, file.problem());

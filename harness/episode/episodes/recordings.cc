@@ -135,7 +135,8 @@ Result<ImportedRecording> ImportRecording(const ImportRequest& request, Recordin
   end.state_hash = HashOfFrames(recording);
   end.timeline = imported.segmented.timeline;
   const NewTask task = TaskOf(request, header, grammars);
-  imported.problem = ProblemOf(request.file, [&] {
+  const auto lock = LockToRecord(request.file, Writer::kAdds);  // nothing is made for what is wrong
+  imported.problem = !lock ? lock.error() : ProblemOf(request.file, [&] {
     const Database database = OpenToWrite(request.file);
     Transaction transaction(database);
     const std::string uuid =
