@@ -89,12 +89,56 @@ TEST(Watch, FramesAfterAPauseAreTaken) {
   const auto file = folder / "pause.jsonl";
   const std::string text = ReadFile(Recorded(folder));
   const std::string head = text.substr(0, text.find('\n') + 1);
-  std::string frames;
-  for (const int tick : {0, 100, 9'000'000, 9'000'100, 9'000'200})
-    frames += "{\"tick\": " + std::to_string(tick) + ", \"samples\": {}}\n";
-  WriteFile(file, head + frames + "{\"end_tick\": 9000300}\n");
-  const Said said = Prehend({"grammar", "watch", file.string()});
-  EXPECT_NE(said.err.find("1 faulty line was skipped"), std::string::npos) << said.err;
+  const auto watched = [&](const std::vector<int>& ticks) {
+    std::string frames;
+    for (const int tick : ticks)
+      frames += "{\"tick\": " + std::to_string(tick) + ", \"samples\": {}}\n";
+    WriteFile(file, head + frames + "{\"end_tick\": 9000300}\n");
+    return Prehend({"grammar", "watch", file.string()});
+  };
+  const Said paused = watched({0, 100, 9'000'000, 9'000'100, 9'000'200});
+  EXPECT_EQ(paused.exit_code, 0) << paused.err;
+  // Of two frames that are far away, and from each other, and of the last one nothing agrees.
+  const Said lost = watched({0, 100, 4'000'000, 9'000'000});
+  EXPECT_EQ(lost.exit_code, 2);
+  EXPECT_NE(lost.err.find("2 faulty lines were skipped"), std::string::npos) << lost.err;
+  EXPECT_NE(lost.err.find("pause.jsonl:4:1: error: a frame 8333.12 s after the one before is left "
+                          "out"),
+            std::string::npos)
+      << lost.err;
+}
+
+// Online and offline are alike: the first frame after a pause counts, and no frames are an error.
+TEST(Watch, SeesWhatIsSeenOfAWholeFile) {
+  const auto folder = FreshFolder("watch");
+  const std::string file = (folder / "f.jsonl").string(), rules = (folder / "g.grammar").string();
+  const std::string head =
+      R"({"recording": 1, "episode": "e", "ticks_per_second": 10, "entities": {"h": {"hand": true, )"
+      R"("size_m": [0.02, 0.02, 0.02]}, "a": {"class": "A", "size_m": [0.02, 0.02, 0.02]}}})"
+      "\n";
+  WriteFile(rules,
+            "grammar g\nevent p(h: Hand, a: A) while touching(h, a)\n"
+            "event n(h: Hand, a: A) while not touching(h, a) and height(a) < 1 m\n");
+  WriteFile(file,
+            head + R"({"tick": 0, "samples": {"h": {"at_m": [0, 0, 0]}, "a": {"at_m": [0, 0, 0]}}})"
+                   "\n"
+                   R"({"tick": 400, "touches": [{"a": "h", "b": "a"}]})"
+                   "\n"
+                   R"({"tick": 401, "touches": [{"a": "h", "b": "a"}]})"
+                   "\n{\"tick\": 402}\n{\"end_tick\": 410}\n");
+  const Said said = Prehend({"grammar", "watch", file, "--grammar", rules, "--json"});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_EQ(Lines(said.out),
+            Json::parse(
+                Prehend({"episode", "resegment", file, "--grammar", rules, "--json"}).out)["events"]
+                .get<std::vector<Json>>());
+  ASSERT_EQ(Lines(said.out).size(), 3u) << said.out;
+  EXPECT_EQ(Lines(said.out)[1]["begin_tick"], 400);
+  WriteFile(file, head + "{\"end_tick\": 5}\n");
+  for (const char* noun : {"watch", "resegment"})
+    EXPECT_EQ(
+        Prehend({noun[0] == 'w' ? "grammar" : "episode", noun, file, "--grammar", rules}).exit_code,
+        2);
 }
 
 TEST(Watch, AFaultyLineIsNamedAndLeftOut) {

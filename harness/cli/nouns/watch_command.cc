@@ -128,7 +128,8 @@ class LineWatcher {
         compiled.program, entities,
         [&](const std::function<void(const episode::FrameNews&)>& take) {
           do {
-            if (HasFrame()) take(stream_.frame()->View());
+            if (!live_ || live_->has_frame())
+              for (episode::EpisodeFrame& frame : stream_.frames()) take(frame.View());
           } while (context_.out && Take(in));
           return std::max<grammar::Tick>(stream_.end_tick(), 1);
         },
@@ -144,8 +145,6 @@ class LineWatcher {
   }
 
  private:
-  bool HasFrame() { return live_ ? live_->has_frame() : stream_.frame() != nullptr; }
-
   /// The next line; after the last one, what it has not finished. False at the end.
   bool Take(std::istream& in) {
     std::string line;
@@ -159,24 +158,30 @@ class LineWatcher {
     wrong_ = !live_   ? stream_.Take(line)
              : ended_ ? live_->Finish(stream_)
                       : live_->Take(line, stream_);
-    if (wrong_.empty() || !stream_.has_header()) return !ended_ || stream_.has_header();
+    if (!stream_.has_header()) return !ended_;
+    Count(wrong_);
+    return true;
+  }
+
+  void Count(const grammar::Diagnostics& wrong) {
+    if (wrong.empty()) return;
     ++skipped_;
-    std::string kind = wrong_.front().message;
+    std::string kind = wrong.front().message;
     std::erase_if(kind, [](unsigned char c) { return std::isdigit(c) || c == '.'; });
     if (faults_.size() >= kMostKinds && !faults_.contains(kind)) kind = "others";
     auto& [count, first] = faults_[kind];
-    if (++count > 1) return true;
-    first = wrong_.front().message;
-    context_.err << grammar::Format(wrong_) << std::flush;
-    return true;
+    if (++count > 1) return;
+    first = wrong.front().message;
+    context_.err << grammar::Format(wrong) << std::flush;
   }
 
   ExitCode EndsTooEarly() const {
     return Refuse(context_, name_ + " ended before its first frame");
   }
 
-  ExitCode End() const {
+  ExitCode End() {
     if (stream_.end_tick() == 0) return EndsTooEarly();
+    Count(stream_.LeftOut());
     context_.err << stream_.gaps();
     for (const auto& [kind, fault] : faults_) {
       if (const auto& [count, first] = fault; count > 1)

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <ostream>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -151,8 +152,8 @@ class EpisodeStream {
   EpisodeStream(const EpisodeStream&) = delete;
   EpisodeStream& operator=(const EpisodeStream&) = delete;
 
-  /// A frame that is farther than this after the one before is faulty, unless the next one agrees
-  /// with it: then there was a pause.
+  /// A frame that is farther than this after the one before waits for the next one. If that agrees
+  /// with it, there was a pause; else it is left out.
   void DoubtFrames(double ahead_s);
   /// Takes the next line, of at most kMaxEpisodeLineBytes. Returns what is wrong with it.
   grammar::Diagnostics Take(const std::string& line);
@@ -161,8 +162,11 @@ class EpisodeStream {
 
   bool has_header() const;
   const EpisodeHeader& header() const;
-  /// The frame that the last line held, until the next line; null if it held none.
-  EpisodeFrame* frame() { return frame_; }
+  /// The frame that the last line held, until the next line, behind one that has waited for it.
+  std::span<EpisodeFrame> frames();
+  EpisodeFrame* frame() { return frames().empty() ? nullptr : &frames().back(); }
+  /// At the end: what is wrong with a frame that still waits.
+  grammar::Diagnostics LeftOut();
   /// What was not tracked so far, and for how long: lines for people.
   std::string gaps() const;
   /// A line has said where the episode ends.
@@ -173,11 +177,8 @@ class EpisodeStream {
   Result<Recording> Whole(grammar::Tick end_tick);
 
  private:
-  template <typename TakeOne>
-  grammar::Diagnostics TakeAny(const TakeOne& take);
   struct Reader;
   std::unique_ptr<Reader> reader_;
-  EpisodeFrame* frame_ = nullptr;
 };
 
 }  // namespace prehend::episode

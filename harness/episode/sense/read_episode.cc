@@ -8,7 +8,10 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <optional>
+#include <span>
+#include <utility>
 #include <variant>
 
 #include "grammar/base/check.h"
@@ -41,7 +44,8 @@ class EpisodeReader {
 
   grammar::Diagnostics diagnostics;
   Recording episode;
-  double most_ahead_s = 0;  ///< EpisodeStream::DoubtFrames; 0: any
+  double most_ahead_s = 0;       ///< EpisodeStream::DoubtFrames; 0: any
+  std::span<EpisodeFrame> news;  ///< the frames that TakeOrNothing() has taken
 
   void TakeLine(const std::string& text) {
     ++line_;
@@ -68,39 +72,63 @@ class EpisodeReader {
     if (!errors.empty()) Report(errors.Sorted());
   }
 
-  void TakeFrame(const FrameEntry& frame) {
+  void TakeLine(const FrameEntry& frame) {
     ++line_;
     DiagnosticList errors(no_document_);
     Take(frame, errors);
     if (!errors.empty()) Report(errors.Sorted());
   }
 
-  /// As if it had not been there, if there is anything wrong with the line or frame.
-  template <typename TakeOne>
-  grammar::Diagnostics TakeOrNothing(const TakeOne& take) {
+  /// As if it had not been there, if there is anything wrong with the line or frame. A frame that
+  /// comes far too late waits for the next one: if that agrees with it, there was a pause.
+  template <typename Entry>
+  grammar::Diagnostics TakeOrNothing(const Entry& entry) {
     const EpisodeFrame now = now_;
     const std::vector<bool> has_ahead = has_ahead_, has_spheres = has_spheres_;
     const GapTolerance bridge = bridge_;
-    const std::size_t frames = episode.frames.size();
+    std::vector<EpisodeFrame>& all = episode.frames;
+    if (!keeps_all_ && all.size() > 1) all.erase(all.begin(), all.end() - 1);
+    const std::size_t frames = all.size();
     const bool said_its_end = episode.says_its_end;
     const grammar::Tick end_tick = episode.end_tick;
-    take();
-    if (most_ahead_s > 0 && frames > 0 && diagnostics.empty()) DoubtFrame(now.tick);
-    grammar::Diagnostics found = std::move(diagnostics);
-    diagnostics.clear();
-    if (!found.empty() && had_header_) {
+    const auto undo = [&] {
       now_ = now;
       has_ahead_ = has_ahead;
       has_spheres_ = has_spheres;
       bridge_ = bridge;
-      episode.frames.resize(frames);
+      all.resize(frames);
       episode.says_its_end = said_its_end;
       episode.end_tick = end_tick;
-    }
+    };
+    TakeLine(entry);
+    grammar::Diagnostics found = std::exchange(diagnostics, {});
+    if (!found.empty() && had_header_) undo();
     if (found.empty() && header_) had_header_ = true;
-    if (!keeps_all_ && episode.frames.size() > 1) episode.frames.erase(episode.frames.begin());
+    if (most_ahead_s > 0 && frames > 0 && all.size() > frames) {
+      const double rate = static_cast<double>(episode.header.entity_table.ticks_per_second),
+                   ahead_s = static_cast<double>(now_.tick - now.tick) / rate;
+      const auto since = static_cast<double>(now_.tick - waiting_tick_);
+      const auto waiting = std::exchange(waiting_, nullptr);
+      found = LeftOut();
+      if (ahead_s > most_ahead_s && waiting && since > 0 && since <= most_ahead_s * rate) {
+        undo();
+        line_ -= 2;  // as many lines are taken again
+        waiting();
+        TakeLine(entry);
+        found = std::exchange(diagnostics, {});
+      } else if (ahead_s > most_ahead_s) {
+        waiting_tick_ = now_.tick;
+        waiting_ = [this, entry] { TakeLine(entry); };
+        undo();
+        Report(fmt::format("a frame {:.6g} s after the one before is left out", ahead_s),
+               "is its time right?");
+        left_out_ = std::exchange(diagnostics, {});
+      }
+    }
+    news = {all.begin() + static_cast<std::ptrdiff_t>(frames), all.end()};
     return found;
   }
+  grammar::Diagnostics LeftOut() { return std::exchange(left_out_, {}); }
   bool has_header() const { return had_header_; }
 
   void Finish() {
@@ -322,19 +350,6 @@ class EpisodeReader {
       errors.Add(entry.tick.where, fmt::format("more than {} frames", kMaxEpisodeFrames));
   }
 
-  /// One frame of a stream; a second one that agrees with it comes after a pause.
-  void DoubtFrame(grammar::Tick before) {
-    const double rate = static_cast<double>(episode.header.entity_table.ticks_per_second),
-                 ahead_s = static_cast<double>(now_.tick - before) / rate;
-    const bool is_far = ahead_s > most_ahead_s;
-    const bool agrees = far_tick_ && now_.tick > *far_tick_ &&
-                        static_cast<double>(now_.tick - *far_tick_) <= most_ahead_s * rate;
-    far_tick_ = is_far ? std::optional(now_.tick) : std::nullopt;
-    if (is_far && !agrees)
-      Report(fmt::format("a frame {:.6g} s after the one before is left out", ahead_s),
-             "is its time right?");
-  }
-
   /// The time since the look that its velocity follows from, which `now_` holds then; 0 if how it
   /// came here is not known.
   double SinceLastLook_s(std::size_t entity, double dt_s) {
@@ -474,7 +489,9 @@ class EpisodeReader {
   ValueFormat<LineEntry> line_format_;
   int line_ = 0;
   const bool keeps_all_;
-  std::optional<grammar::Tick> far_tick_;  ///< of the last frame, if it was left out
+  std::function<void()> waiting_;  ///< takes the frame that waits for the next one
+  grammar::Tick waiting_tick_ = 0;
+  grammar::Diagnostics left_out_;
   bool header_ = false;
   bool had_header_ = false;  ///< a good one
   std::vector<std::string> names_;
@@ -513,22 +530,14 @@ EpisodeStream::EpisodeStream(const std::string& name, bool keeps_all)
     : reader_(std::make_unique<Reader>(Reader{EpisodeReader(name, keeps_all)})) {}
 EpisodeStream::~EpisodeStream() = default;
 
-template <typename TakeOne>
-grammar::Diagnostics EpisodeStream::TakeAny(const TakeOne& take) {
-  std::vector<EpisodeFrame>& frames = reader_->lines.episode.frames;
-  const bool first = frames.empty();
-  const grammar::Tick before = first ? 0 : frames.back().tick;
-  grammar::Diagnostics found = reader_->lines.TakeOrNothing(take);
-  const bool is_new = !frames.empty() && (first || frames.back().tick != before);
-  frame_ = is_new ? &frames.back() : nullptr;
-  return found;
-}
 grammar::Diagnostics EpisodeStream::Take(const std::string& line) {
-  return TakeAny([&] { reader_->lines.TakeLine(line); });
+  return reader_->lines.TakeOrNothing(line);
 }
 grammar::Diagnostics EpisodeStream::Take(const FrameEntry& frame) {
-  return TakeAny([&] { reader_->lines.TakeFrame(frame); });
+  return reader_->lines.TakeOrNothing(frame);
 }
+grammar::Diagnostics EpisodeStream::LeftOut() { return reader_->lines.LeftOut(); }
+std::span<EpisodeFrame> EpisodeStream::frames() { return reader_->lines.news; }
 
 Result<Recording> EpisodeStream::Whole(grammar::Tick end_tick) {
   EpisodeReader& lines = reader_->lines;
@@ -548,8 +557,8 @@ std::string EpisodeStream::gaps() const {
 bool EpisodeStream::says_its_end() const { return reader_->lines.episode.says_its_end; }
 grammar::Tick EpisodeStream::end_tick() const {
   const Recording& episode = reader_->lines.episode;
-  if (episode.says_its_end) return episode.end_tick;
-  return episode.frames.empty() ? 0 : episode.frames.back().tick + 1;
+  if (episode.frames.empty()) return 0;
+  return episode.says_its_end ? episode.end_tick : episode.frames.back().tick + 1;
 }
 
 Result<Recording> ReadRecording(const std::string& path) {

@@ -202,7 +202,7 @@ grammar::Diagnostics LivePoses::Emit(episode::EpisodeStream& stream) {
                                     *last_s_)}};
   grammar::Diagnostics wrong = stream.Take(frame);
   for (grammar::Diagnostic& one : wrong) one.place = {line_, 1};
-  if (wrong.empty()) last_s_ = frame_s;
+  if (stream.frame()) last_s_ = frame_s;
   has_frame_ = has_frame_ || stream.frame() != nullptr;
   return wrong;
 }
