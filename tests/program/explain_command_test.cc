@@ -78,6 +78,36 @@ TEST(ExplainCommand, WhyNotIsAskedOfTheSameGrammarAndSettings) {
       << said.err;
 }
 
+// What is said to be enough is enough: the hand is 240 mm away when it has to be nearer.
+TEST(ExplainCommand, TheNumberThatWouldHaveMadeItDoes) {
+  const auto folder = FreshFolder("explain_command");
+  const std::string file = (folder / "f.jsonl").string(), rules = (folder / "g.grammar").string();
+  WriteFile(rules,
+            "grammar g\nparam lim = 20 cm\n"
+            "event near(h: Hand, a: A) while distance(h, a) < lim lasting 0.6 s\n");
+  std::string text =
+      R"({"recording": 1, "episode": "e", "ticks_per_second": 10, "entities": {"h": {"hand": true, )"
+      R"("size_m": [0.02, 0.02, 0.02]}, "a": {"class": "A", "size_m": [0.02, 0.02, 0.02]}}})"
+      "\n";
+  for (int tick = 0; tick < 11; ++tick)
+    text += "{\"tick\": " + std::to_string(tick) +
+            R"(, "samples": {"a": {"at_m": [0, 0, 0]}, "h": )" + R"({"at_m": [)" +
+            (tick < 5    ? "0.5"
+             : tick == 5 ? "0.24"
+                         : "0.1") +
+            ", 0, 0]}}}\n";
+  WriteFile(file, text + "{\"end_tick\": 11}\n");
+  const auto why = [&](const std::string& set) {
+    return Prehend({"explain", file, "--grammar", rules, "--set", set, "--expected", "near@0.6s"});
+  };
+  const Said said = why("lim=20cm");
+  EXPECT_NE(said.out.find("\n    with 241 mm instead of 200 mm it would have happened\n"),
+            std::string::npos)
+      << said.out;
+  EXPECT_NE(why("lim=240mm").out.find("did not happen"), std::string::npos);
+  EXPECT_EQ(why("lim=241mm").out.find("did not happen"), std::string::npos);
+}
+
 TEST(ExplainCommand, BadQuestionsEndWithExitCodeTwo) {
   const std::vector<std::vector<std::string>> slips = {
       {"milk_carton_wrap", "--event", "reching@1s"},

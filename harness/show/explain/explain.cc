@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <tuple>
 
 #include "grammar/compile/limits.h"
@@ -187,10 +188,10 @@ std::string Sentence(const std::optional<Decisive>& decisive, const char* what) 
   if (decisive->clause.empty())
     return fmt::format("  decisive: no clause alone; with no other single number would it {}\n",
                        what);
-  const ValueTexts texts = Compared(decisive->instead, decisive->limit, decisive->dimension);
+  const auto text = [&](double value) { return QuantityText(value, decisive->dimension, 12); };
   return fmt::format("  decisive: {} of {}  ({})\n    with {} instead of {} it would {}\n",
-                     decisive->clause, decisive->rule, decisive->where, texts.value, texts.limit,
-                     what);
+                     decisive->clause, decisive->rule, decisive->where, text(decisive->instead),
+                     text(decisive->limit), what);
 }
 
 }  // namespace
@@ -362,6 +363,14 @@ struct Change {
   }
 };
 
+/// With so many digits in the unit that is shown, no nearer to the limit.
+double RoundedAway(double value, const grammar::Quantity& limit, int digits) {
+  const double unit = limit.dimension.angle == 1 ? std::numbers::pi / 180 : 1;
+  const double step = unit * std::pow(10, std::floor(std::log10(value / unit)) - digits + 1);
+  return grammar::AsWritten(
+      (value > limit.value ? std::ceil(value / step) : std::floor(value / step)) * step);
+}
+
 using IsThere = std::function<bool(const NamedEvent&)>;
 
 /// `came`: the event that the decisive change brings.
@@ -371,10 +380,9 @@ std::optional<Decisive> Search(const grammar::ReplayMonitor& past, const std::st
   const Program& program = past.program();
   const std::vector<Limit> limits = grammar::LimitsOf(program, rule);
   std::optional<NamedEvent> last;
-  const auto does = [&](const Change& change, double share) {
-    const double value = change.At(share);
-    if (value == change.limit->value.value) return false;
-    const auto changed = grammar::WithLimit(program, rule, *change.limit, value);
+  const auto works = [&](const Limit& limit, double value) {
+    if (value == limit.value.value) return false;
+    const auto changed = grammar::WithLimit(program, rule, limit, value);
     const auto timeline = changed ? recognise(changed) : std::nullopt;
     if (!timeline) return false;
     const auto there = std::ranges::find_if(timeline->events, is_there);
@@ -392,11 +400,11 @@ std::optional<Decisive> Search(const grammar::ReplayMonitor& past, const std::st
   double before = 0;
   for (const double share : Shares(changes.size(), past.frames())) {
     for (const Change& change : changes) {
-      if (!does(change, share)) continue;
+      if (!works(*change.limit, change.At(share))) continue;
       double low = before, high = share;
       for (int k = 0; k < kHalvings; ++k) {
         const double middle = (low + high) / 2;
-        (does(change, middle) ? high : low) = middle;
+        (works(*change.limit, change.At(middle)) ? high : low) = middle;
       }
       if (high >= least) continue;
       least = high;
@@ -408,11 +416,16 @@ std::optional<Decisive> Search(const grammar::ReplayMonitor& past, const std::st
   }
   if (best == nullptr) return std::nullopt;
   const Limit& limit = *best->limit;
+  double instead = best->At(least);
+  for (int digits = 12; digits > 0; digits -= 3) {
+    const double rounded = RoundedAway(best->At(least), limit.value, digits);
+    if (works(limit, rounded)) instead = rounded, came = last;
+  }
   return Decisive{.clause = limit.clause,
                   .rule = limit.owner,
                   .where = Source(limit.file, limit.place),
                   .limit = limit.value.value,
-                  .instead = best->At(least),
+                  .instead = instead,
                   .dimension = limit.value.dimension,
                   .share = least};
 }
