@@ -226,6 +226,10 @@ TEST_F(Found, WhatIsNotThereIsNeverNothing) {
             "");
   EXPECT_EQ(Has(refused(line(R"({"error": "no model"})")), "the recogniser failed: \"no model\""),
             "");
+  EXPECT_EQ(Has(refused(line(R"({"recogniser": 2})")),
+                "milk.jsonl:1:1: error: found version 2 of the protocol, wanted 1\n"
+                "  hint: {\"recogniser\": 1, ..}\n"),
+            "");
   // Nothing found, said by a first line alone.
   EXPECT_EQ(Score({take, "--truth", truth, "--map", docs_ + "/labels.yaml", "--found",
                    line(R"({"recogniser": 1})")})[0]["total"]["found"],

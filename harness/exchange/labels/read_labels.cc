@@ -517,20 +517,23 @@ grammar::Diagnostics ReadJsonLabels(LabelFile& file, double ticks_per_second) {
         text.substr(begin, end - begin).find_first_not_of(" \t") == std::string_view::npos;
     begin = end + 1;
     Label label{.place = {++number, 1}, .roles = {}};
-    std::string problem;
+    std::string problem,
+        wanted = R"({"event": "NAME", "roles": {..}, "begin_tick": N, "end_tick": N})";
     if (is_blank) continue;
-    if (!line.is_object())
+    if (!line.is_object()) {
       problem = "it is no JSON object";
-    else if (line.contains("event"))
+    } else if (line.contains("recogniser") && line["recogniser"] != 1) {
+      problem = "found version " + line["recogniser"].dump() + " of the protocol, wanted 1";
+      wanted = R"({"recogniser": 1, ..})";
+    } else if (line.contains("event")) {
       problem = ReadEventLine(line, ticks_per_second, label);
-    else if (line.contains("error"))
+    } else if (line.contains("error")) {
       problem = "the recogniser failed: " + line["error"].dump();
-    else if (line.contains("recording") || line.contains("tick"))
+    } else if (line.contains("recording") || line.contains("tick")) {
       problem = "it is a line of a recording, and no event";
+    }
     if (!problem.empty())
-      problems.push_back(
-          file.At(label.place, problem,
-                  R"({"event": "NAME", "roles": {..}, "begin_tick": N, "end_tick": N})"));
+      problems.push_back(file.At(label.place, problem, wanted));
     else if (!label.text.empty())
       file.labels.push_back(std::move(label));
   }
