@@ -96,6 +96,9 @@ std::optional<grammar::NamedEvent> EventIn(const std::string& text, const Events
                  : grammar::Role{event->roles[i], values[i]});
   }
   PutInOrder(*event, named.roles);
+  if (std::ranges::adjacent_find(named.roles, {}, &grammar::Role::name) != named.roles.end())
+    return problem = fmt::format("found the label '{}', which names a role twice", text),
+           std::nullopt;
   return named;
 }
 

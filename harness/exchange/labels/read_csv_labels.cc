@@ -211,11 +211,12 @@ class ColumnFinder {
       return Problem(
           fmt::format("{}; the map says that '{}' is the end of a label", found_, how_.end),
           fmt::format("a length is no end: columns: {{duration: {}}}", how_.end));
-    if (!how_.begin.empty() && how_.begin == how_.end)
+    if (columns_.begin && columns_.end && columns_.begin->seat == columns_.end->seat)
       return Problem(
-          fmt::format("{}; the map says that '{}' is both the begin and the end", found_, how_.end),
+          fmt::format("{}; the map says that '{}' is both the begin and the end", found_,
+                      words_[columns_.end->seat]),
           fmt::format("are there rows for START and for STOP? columns: {{time: {}, kind: COLUMN}}",
-                      how_.end));
+                      words_[columns_.end->seat]));
     if (!columns_.HasTimes() || !columns_.label)
       return Problem(
           found_ + "; wanted one for the begin, the end and the label of each row",

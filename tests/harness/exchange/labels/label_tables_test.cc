@@ -100,6 +100,11 @@ TEST_F(LabelTables, RowsForBothEndsArePaired) {
             "1:1 found the columns Time, Subject, Behavior, Type; the map says that 'Time' is both "
             "the begin and the end | are there rows for START and for STOP? columns: {time: Time, "
             "kind: COLUMN}");
+  // The other one may be found by its usual name.
+  EXPECT_EQ(
+      Read("a.csv", "begin,end,label\n0,1,hold\n", {.begin = "end"}),
+      "1:1 found the columns begin, end, label; the map says that 'end' is both the begin and "
+      "the end | are there rows for START and for STOP? columns: {time: end, kind: COLUMN}");
 }
 
 TEST_F(LabelTables, FramesOneAfterAnotherAreOneLabel) {

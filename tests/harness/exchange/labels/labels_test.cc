@@ -505,6 +505,10 @@ TEST_F(Labels, UnknownLabelsTiersEntitiesAndTimesAreNamed) {
   EXPECT_EQ(has(problem("0,1,hold,right", nullptr), "found the label 'hold', wanted an event"), "");
   EXPECT_EQ(
       has(problem("0,1,\"grasping(right_hand)\",x", nullptr), "wanted grasping(hand, object)"), "");
+  EXPECT_EQ(has(problem("0,1,\"grasping(hand=right_hand, hand=right_hand)\",x", nullptr),
+                "found the label 'grasping(hand=right_hand, hand=right_hand)', which names a role "
+                "twice"),
+            "");
 }
 
 TEST_F(Labels, WhatIsWrittenIsReadAgain) {
