@@ -389,8 +389,9 @@ PYBIND11_MODULE(_prehend, m) {
            [](const Episode& e, const Grammar* grammar, const std::string& file,
               const std::string& map) { return ToPython(ReadLabels(e, grammar, file, map)); })
       .def("write_frames", &Episode::WriteFrames, Unlocked())
-      .def("write_labels", [](const Episode& e, const Events& events, const std::string& file) {
-        e.WriteLabels(ToTimeline(events, e.entities().ticks_per_second), file);
+      .def("write_labels", [](const Episode& e, const Events& events, const std::string& file,
+                              const Grammar* grammar) {
+        e.WriteLabels(ToTimeline(events, e.entities().ticks_per_second), file, grammar);
       });
   py::class_<LiveMonitor>(m, "Monitor")
       .def(py::init<const Grammar&, const std::string&>())

@@ -131,7 +131,7 @@ class Events(pd.DataFrame):
             return
         if not str(file).lower().endswith((".csv", ".eaf", ".textgrid")):
             fail(Error, f"found {os.path.basename(file)!r}, wanted NAME.csv, .eaf, .TextGrid or .json", "write('take1.eaf')")
-        self._has_source().episode.write_labels(self._tuples(), str(file))
+        self._has_source().episode.write_labels(self._tuples(), str(file), getattr(self._source.grammar, "_compiled", None))
 
     def svg(self) -> str:
         """The timeline as SVG, str: a row for each event and hand."""

@@ -4,6 +4,7 @@
 
 #include <iomanip>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 
 #include "tests/program/program.h"
@@ -89,6 +90,53 @@ TEST_F(Labelled, TheGrammarOfTheRecordingIsScoredUnlessAnotherIsNamed) {
   EXPECT_EQ(most.exit_code, 2);
   EXPECT_TRUE(Has(most.err, "hint: one of them for all: --grammar pick_and_place_from_motion"))
       << most.err;
+}
+
+/// Three actions of two hands: the second one begins and ends in the first and third of the other.
+void WriteTwoHands(const std::string& file) {
+  const std::string size = R"("size_m": [0.1, 0.1, 0.1]})";
+  std::string text = R"({"recording": 1, "episode": "e", "ticks_per_second": 10, "entities": {)";
+  for (const char* hand : {"h1", "h2"})
+    text += "\"" + std::string(hand) + R"(": {"hand": true, )" + size + ", ";
+  text += R"("a": {"class": "A", )" + size + R"(, "b": {"class": "B", )" + size + "}}\n";
+  const auto touch = [](const char* hand, const char* thing, bool on) {
+    return on ? R"({"a": ")" + std::string(hand) + R"(", "b": ")" + thing + R"("},)"
+              : std::string();
+  };
+  for (int tick = 0; tick < 60; ++tick) {
+    std::string touches = touch("h1", "a", tick < 20) + touch("h2", "a", tick >= 10 && tick < 50) +
+                          touch("h1", "b", tick >= 30);
+    if (!touches.empty()) touches.pop_back();
+    text += R"({"tick": )" + std::to_string(tick) + R"(, "touches": [)" + touches + "]}\n";
+  }
+  WriteFile(file, text + "{\"end_tick\": 60}\n");
+}
+
+TEST_F(Labelled, AHandIsKnownByTheClassOfItsRole) {
+  WriteTwoHands(Path("take.jsonl"));
+  WriteFile(Path("truth.csv"),
+            "begin_s,end_s,label\n0,2,\"p(h1, a)\"\n1,5,\"p(h2, a)\"\n2,6,\"q(h1, b)\"\n");
+  const auto all_of = [&](const std::string& role) {
+    const std::string rules =
+        "grammar g\nevent p({0}: Hand, a: A) while touching({0}, a)\n"
+        "event q({0}: Hand, b: B) while touching({0}, b)\n";
+    WriteFile(Path("g.grammar"), std::regex_replace(rules, std::regex("\\{0\\}"), role));
+    const Said scored = Prehend({"score", Path("take.jsonl"), "--truth", Path("truth.csv"),
+                                 "--grammar", Path("g.grammar")});
+    EXPECT_TRUE(Has(scored.out, "\nEach hand for itself:\n")) << scored.out << scored.err;
+    EXPECT_TRUE(Has(scored.out, "\nq of h1     1      1")) << scored.out;
+    EXPECT_EQ(Prehend({"episode", "resegment", Path("take.jsonl"), "--grammar", Path("g.grammar"),
+                       "-o", Path("found.csv")})
+                  .exit_code,
+              0);
+    return scored.out + ReadFile(Path("found.csv"));
+  };
+  const std::string named = all_of("hand");
+  EXPECT_EQ(all_of("h"), named);
+  EXPECT_TRUE(Has(named,
+                  "0.0000,2.0000,\"p(h1, a)\",p of h1\n1.0000,5.0000,\"p(h2, a)\",p of h2\n"
+                  "3.0000,6.0000,\"q(h1, b)\",q of h1\n"))
+      << named;
 }
 
 TEST_F(Labelled, TakesOfAFolderAreSummed) {

@@ -208,11 +208,8 @@ grammar::Timeline Compared(const grammar::Timeline& timeline, const ComparedRole
   return all;
 }
 
-grammar::Timeline ByHand(grammar::Timeline timeline) {
-  for (grammar::NamedEvent& event : timeline.events) {
-    const std::string& hand = truth::RoleValue(event, "hand");
-    if (!hand.empty()) event.event += " of " + hand;
-  }
+grammar::Timeline ByHand(grammar::Timeline timeline, const truth::HandRoles& hands) {
+  for (grammar::NamedEvent& event : timeline.events) event.event = truth::NameByHand(event, hands);
   return timeline;
 }
 

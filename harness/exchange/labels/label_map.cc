@@ -318,6 +318,7 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
   if (!problems.empty()) return tl::unexpected(std::move(problems));
   for (const auto& [name, _] : reading.compared_)
     reading.signatures_.emplace(name, *FindEvent(events, name));
+  reading.hands_ = truth::HandRolesOf(events);
   reading.files_ = std::move(files);
   reading.takes_ = std::move(takes);
   return reading;

@@ -17,6 +17,7 @@
 #include "harness/base/base/located.h"
 #include "harness/base/yaml/located_yaml.h"
 #include "harness/exchange/labels/read_labels.h"
+#include "harness/truth/timeline/event_text.h"
 
 namespace prehend::exchange {
 
@@ -115,6 +116,7 @@ class LabelReading {
 
   const std::vector<LabelFile>& files() const { return files_; }
   const ComparedRoles& compared() const { return compared_; }
+  const truth::HandRoles& hands() const { return hands_; }
   const TakeRows& rows(std::size_t take) const { return takes_[take]; }
   /// What is added to all times of labels; nothing if that differs between takes.
   std::optional<double> offset_s() const;
@@ -172,6 +174,7 @@ class LabelReading {
   std::vector<TakeRows> takes_;
   std::vector<std::vector<LabelledEvent>> events_;  ///< per take
   ComparedRoles compared_;
+  truth::HandRoles hands_;
   std::map<std::string, grammar::EventSignature> signatures_;  ///< of the compared events
   std::optional<YamlDocument> map_;
   double join_s_ = 0;
@@ -186,7 +189,7 @@ grammar::Timeline Compared(const grammar::Timeline& timeline, const ComparedRole
                            grammar::Tick join = 0);
 
 /// The same with the hand in the name of each event that has one: "grasping of left_hand".
-grammar::Timeline ByHand(grammar::Timeline timeline);
+grammar::Timeline ByHand(grammar::Timeline timeline, const truth::HandRoles& hands);
 
 // Videos and trackers begin at different times: labels that are all too early, or all too late.
 

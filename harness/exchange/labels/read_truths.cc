@@ -331,11 +331,10 @@ struct Tier {
 };
 
 /// Sorted by name.
-std::vector<Tier> TiersOf(const grammar::Timeline& timeline) {
+std::vector<Tier> TiersOf(const grammar::Timeline& timeline, const truth::HandRoles& hands) {
   std::vector<Tier> tiers;
   for (const grammar::NamedEvent& event : timeline.events) {
-    const std::string& hand = truth::RoleValue(event, "hand");
-    const std::string name = hand.empty() ? event.event : event.event + " of " + hand;
+    const std::string name = truth::NameByHand(event, hands);
     std::size_t copies = 1;
     Tier* free = nullptr;
     for (Tier& tier : tiers) {
@@ -353,9 +352,9 @@ std::vector<Tier> TiersOf(const grammar::Timeline& timeline) {
   return tiers;
 }
 
-std::string CsvText(const grammar::Timeline& timeline) {
+std::string CsvText(const grammar::Timeline& timeline, const std::vector<Tier>& tiers) {
   std::string text = "begin_s,end_s,label,tier\n";
-  for (const Tier& tier : TiersOf(timeline)) {
+  for (const Tier& tier : tiers) {
     for (const grammar::NamedEvent* event : tier.events)
       text += fmt::format("{},{},\"{}\",{}\n",
                           truth::SecondsText(event->interval.begin, timeline.ticks_per_second),
@@ -365,7 +364,8 @@ std::string CsvText(const grammar::Timeline& timeline) {
   return text;
 }
 
-std::string EafText(const grammar::Timeline& timeline, const std::string& date) {
+std::string EafText(const grammar::Timeline& timeline, const std::vector<Tier>& tiers,
+                    const std::string& date) {
   pugi::xml_document document;
   const pugi::xml_node root =
       AddElement(document, "ANNOTATION_DOCUMENT",
@@ -381,7 +381,6 @@ std::string EafText(const grammar::Timeline& timeline, const std::string& date) 
     return fmt::format("{:.0f}",
                        std::round(truth::MillisecondsOf(tick, timeline.ticks_per_second)));
   };
-  const std::vector<Tier> tiers = TiersOf(timeline);
   std::map<grammar::Tick, std::string> slots;  // one for each time, in their order
   for (const grammar::NamedEvent& event : timeline.events)
     slots[event.interval.begin], slots[event.interval.end];
@@ -410,12 +409,12 @@ std::string EafText(const grammar::Timeline& timeline, const std::string& date) 
 }
 
 /// Tiers of a TextGrid have no gaps: between labels stand empty ones.
-std::string TextGridText(const grammar::Timeline& timeline, grammar::Tick end) {
+std::string TextGridText(const grammar::Timeline& timeline, const std::vector<Tier>& tiers,
+                         grammar::Tick end) {
   struct Interval {
     grammar::Tick begin, end;
     std::string text;
   };
-  const std::vector<Tier> tiers = TiersOf(timeline);
   const auto seconds = [&](grammar::Tick tick) {
     return truth::SecondsText(tick, timeline.ticks_per_second);
   };
@@ -506,9 +505,10 @@ bool CanWriteLabels(const std::string& path) {
 }
 
 std::string LabelsText(const std::string& ending, const grammar::Timeline& timeline,
-                       grammar::Tick end, const std::string& date) {
-  if (ending == ".eaf") return EafText(timeline, date);
-  return ending == ".csv" ? CsvText(timeline) : TextGridText(timeline, end);
+                       const truth::HandRoles& hands, grammar::Tick end, const std::string& date) {
+  const std::vector<Tier> tiers = TiersOf(timeline, hands);
+  if (ending == ".eaf") return EafText(timeline, tiers, date);
+  return ending == ".csv" ? CsvText(timeline, tiers) : TextGridText(timeline, tiers, end);
 }
 
 tl::expected<std::size_t, episode::NotFound> WriteLabels(episode::Episode& episode,
@@ -529,8 +529,10 @@ tl::expected<std::size_t, episode::NotFound> WriteLabels(episode::Episode& episo
   std::erase_if(found->events, [&](const grammar::NamedEvent& event) {
     return !only.empty() && std::ranges::count(only, event.event) == 0;
   });
-  const std::string problem = WriteTextFile(
-      file, LabelsText(file.substr(file.rfind('.')), *found, *episode.EndTick(), date));
+  const std::string problem =
+      WriteTextFile(file, LabelsText(file.substr(file.rfind('.')), *found,
+                                     truth::HandRolesOf(grammar::EventSignatures(program)),
+                                     *episode.EndTick(), date));
   if (problem.empty()) return found->events.size();
   return tl::unexpected(episode::NotFound{.exit_code = ExitCode::kFailure, .message = problem});
 }

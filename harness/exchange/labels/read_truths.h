@@ -59,7 +59,7 @@ bool CanWriteLabels(const std::string& path);
 /// whole milliseconds. `end`: of the recording, in ticks; `date`: YYYY-MM-DD, which EAF asks for;
 /// `ending`: .csv, .eaf or .TextGrid.
 std::string LabelsText(const std::string& ending, const grammar::Timeline& timeline,
-                       grammar::Tick end, const std::string& date);
+                       const truth::HandRoles& hands, grammar::Tick end, const std::string& date);
 
 /// Writes what the grammar of an episode recognises: `only` these events, if there are any. The
 /// ending of `file` says how. Returns the count of labels.

@@ -95,11 +95,10 @@ constexpr double kSettles_s = 0.5;  ///< what a label requires may begin so much
 std::string EventIn(const std::string& label) { return label.substr(0, label.find('(')); }
 
 bool Fits(const grammar::NamedEvent& event, const SubtaskLabel& label) {
-  const auto is = [&](const char* role, const std::optional<Located<std::string>>& wanted) {
-    return !wanted || truth::RoleValue(event, role) == wanted->value;
-  };
-  return event.event == label.of.value && is("hand", label.hand) && is("object", label.object) &&
-         !(label.at_end && event.open_end);
+  return event.event == label.of.value && !(label.at_end && event.open_end) &&
+         (!label.hand ||
+          std::ranges::count(event.roles, label.hand->value, &grammar::Role::value)) &&
+         (!label.object || truth::RoleValue(event, "object") == label.object->value);
 }
 
 /// Whether the event that a label requires holds at a tick, or soon.

@@ -100,8 +100,10 @@ class PREHEND_API Episode {
   Segmented Segment(const Grammar* grammar = nullptr) const;
   /// Writes its frames as a recording (docs/recording-format.md), NAME.jsonl.
   void WriteFrames(const std::string& file) const;
-  /// Writes events for people's tools: ELAN (.eaf), Praat (.TextGrid) or .csv.
-  void WriteLabels(const grammar::Timeline& timeline, const std::string& file) const;
+  /// Writes events for people's tools: ELAN (.eaf), Praat (.TextGrid) or .csv. `grammar` says which
+  /// roles are hands; without it those called "hand".
+  void WriteLabels(const grammar::Timeline& timeline, const std::string& file,
+                   const Grammar* grammar = nullptr) const;
 
   struct __attribute__((visibility("hidden"))) Impl;
   explicit Episode(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}

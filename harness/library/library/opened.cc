@@ -121,7 +121,8 @@ void Episode::WriteFrames(const std::string& file) const {
   });
 }
 
-void Episode::WriteLabels(const grammar::Timeline& timeline, const std::string& file) const {
+void Episode::WriteLabels(const grammar::Timeline& timeline, const std::string& file,
+                          const Grammar* grammar) const {
   const std::size_t dot = file.rfind('.');
   const std::string ending = dot == std::string::npos ? "" : file.substr(dot);
   if (!exchange::CanWriteLabels(file))
@@ -130,8 +131,10 @@ void Episode::WriteLabels(const grammar::Timeline& timeline, const std::string& 
   const std::time_t now = std::time(nullptr);
   std::tm parts;
   std::strftime(date, sizeof date, "%Y-%m-%d", localtime_r(&now, &parts));
+  truth::HandRoles hands;
+  if (grammar) hands = truth::HandRolesOf(EventSignatures(*grammar->program()));
   const std::string problem =
-      WriteTextFile(file, exchange::LabelsText(ending, timeline, end(), date));
+      WriteTextFile(file, exchange::LabelsText(ending, timeline, hands, end(), date));
   if (!problem.empty()) Refuse(file, problem);
 }
 

@@ -170,12 +170,14 @@ std::string TimelineSvg(const grammar::Timeline& timeline, grammar::Tick end,
                         const Grammar* grammar) {
   const truth::EventDrawings drawings =
       grammar ? truth::EventDrawings(*grammar->program()) : truth::EventDrawings();
+  truth::HandRoles hands;
+  if (grammar) hands = truth::HandRolesOf(EventSignatures(*grammar->program()));
   const auto seconds = [&](grammar::Tick tick) {
     return static_cast<double>(tick) / static_cast<double>(timeline.ticks_per_second);
   };
   show::Chart chart{.title = "", .from_s = 0, .to_s = seconds(end)};
   for (const grammar::NamedEvent& event : timeline.events) {
-    const std::string& hand = truth::RoleValue(event, "hand");
+    const std::string& hand = truth::HandOf(event, hands);
     const std::string name = hand.empty() ? event.event : hand + ": " + event.event;
     const std::string label = event.Label();
     show::Bar bar{.begin_s = seconds(event.interval.begin),

@@ -81,7 +81,7 @@ EventScore ScoreKind(const std::vector<EpisodeToScore>& episodes, const std::str
     LabelledEpisode episode = Labelled(truth, found, judged.ticks);
     AddEpisode(judged, episode, event, collar_s, score);
     if (episode.by_label.empty()) continue;  // neither true nor found
-    edit.Add(TracksOf(truth, found, judged.ticks));
+    edit.Add(TracksOf(truth, found, judged.ticks, judged.hands));
     labelled.push_back(std::move(episode));
   }
   score.edit = edit.Mean();
@@ -117,7 +117,7 @@ EpisodeRow RowOf(const EpisodeToScore& judged, const std::set<std::string>& kind
   const LabelledEpisode all = Labelled(judged.truth, judged.found, judged.ticks);
   AddEpisode(judged, all, "", collar_s, row.total);
   EditOfTracks edit;
-  edit.Add(TracksOf(judged.truth, judged.found, judged.ticks));
+  edit.Add(TracksOf(judged.truth, judged.found, judged.ticks, judged.hands));
   row.total.edit = edit.Mean();
   for (const std::string& kind : kinds) {
     const LabelledEpisode of_kind =
@@ -149,8 +149,8 @@ void MergeInto(Segments& track, const Segments& more) {
   std::ranges::stable_sort(track, {}, [](const Segment& one) { return one.interval.begin; });
 }
 
-std::string WhoseOf(const grammar::NamedEvent& event) {
-  const std::string& hand = truth::RoleValue(event, "hand");
+std::string WhoseOf(const NamedEvent& event, const truth::HandRoles& hands) {
+  const std::string& hand = truth::HandOf(event, hands);
   if (!hand.empty()) return hand;
   std::string roles;
   for (const grammar::Role& role : event.roles) roles += role.value + ",";
@@ -213,12 +213,12 @@ Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& all
 }
 
 std::vector<Episode> TracksOf(const grammar::Timeline& truth, const grammar::Timeline& found,
-                              grammar::Tick ticks) {
+                              grammar::Tick ticks, const truth::HandRoles& hands) {
   std::map<std::string, std::map<std::string, TwoSides>> by_hand;
   for (const grammar::NamedEvent& event : truth.events)
-    by_hand[WhoseOf(event)][event.Label()].truth.push_back({event.Label(), event.interval});
+    by_hand[WhoseOf(event, hands)][event.Label()].truth.push_back({event.Label(), event.interval});
   for (const grammar::NamedEvent& event : found.events)
-    by_hand[WhoseOf(event)][event.Label()].found.push_back({event.Label(), event.interval});
+    by_hand[WhoseOf(event, hands)][event.Label()].found.push_back({event.Label(), event.interval});
   std::vector<Episode> all;
   for (const auto& [hand, labels] : by_hand) {
     const std::size_t first = all.size();

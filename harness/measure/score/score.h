@@ -24,7 +24,7 @@ namespace prehend::measure {
 /// they overlap on neither side: labels, by the alphabet, each in the first track in which it
 /// overlaps no other one.
 std::vector<Episode> TracksOf(const grammar::Timeline& truth, const grammar::Timeline& found,
-                              grammar::Tick ticks);
+                              grammar::Tick ticks, const truth::HandRoles& hands = {});
 
 /// Mean edit score of tracks; 100 if there are none.
 class EditOfTracks {
@@ -61,6 +61,7 @@ struct EpisodeToScore {
   std::size_t take = 0;  ///< which one of those that were asked for
   std::string video = {};
   double offset_s = 0;  ///< of the clock of its labels and video
+  truth::HandRoles hands = {};
 };
 
 /// Signed offsets of the boundaries of matched events (found - true), or from ends to decisions.

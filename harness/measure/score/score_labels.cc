@@ -297,6 +297,7 @@ std::string ClockWarning(const std::string& grammar, const std::vector<EpisodeTo
 
 void AddFound(const grammar::Timeline& found, std::size_t index,
               const exchange::LabelReading& truths, double collar_s, EpisodeToScore& labelled) {
+  labelled.hands = truths.hands();
   labelled.found = exchange::Compared(found, truths.compared());
   labelled.moments = truths.TakeMoments(
       index, labelled.truth,
@@ -314,8 +315,8 @@ void AddScores(const std::string& grammar, std::vector<EpisodeToScore> episodes,
   scores.of_grammars.push_back(ScoreOf(grammar, episodes, collar_s, collars));
   scores.of_grammars.back().ignored_because = "no label means them";
   for (EpisodeToScore& episode : episodes) {
-    episode.truth = exchange::ByHand(std::move(episode.truth));
-    episode.found = exchange::ByHand(std::move(episode.found));
+    episode.truth = exchange::ByHand(std::move(episode.truth), episode.hands);
+    episode.found = exchange::ByHand(std::move(episode.found), episode.hands);
   }
   scores.by_hand.push_back(ScoreOf(grammar, episodes, collar_s, collars));
   scores.by_hand.back().ignored.clear();
@@ -399,6 +400,7 @@ Result<LabelScores> ScoreLabelFiles(const LabelFilesRequest& request, std::strin
                         .ticks = end,
                         .truth = reading.Marked(i, kTicksPerSecond, end, false),
                         .found = reading.Marked(count + i, kTicksPerSecond, end, false)};
+    pair.hands = reading.hands();
     pair.moments = reading.TakeMoments(
         i, pair.truth, std::llround(request.collar_s * static_cast<double>(kTicksPerSecond)),
         pair.found);

@@ -72,6 +72,26 @@ const std::string& RoleValue(const NamedEvent& event, std::string_view role) {
   return found == event.roles.end() ? kNone : found->value;
 }
 
+HandRoles HandRolesOf(const std::vector<grammar::EventSignature>& events) {
+  HandRoles roles;
+  for (const grammar::EventSignature& event : events) {
+    const auto hand = std::ranges::find(event.classes, "Hand");
+    const bool is_one = std::ranges::count(event.classes, "Hand") == 1;
+    roles[event.name] = is_one ? event.roles[hand - event.classes.begin()] : "";
+  }
+  return roles;
+}
+
+const std::string& HandOf(const NamedEvent& event, const HandRoles& roles) {
+  const auto role = roles.find(event.event.substr(0, event.event.find(" of ")));
+  return RoleValue(event, role == roles.end() ? "hand" : role->second);
+}
+
+std::string NameByHand(const NamedEvent& event, const HandRoles& roles) {
+  const std::string& hand = HandOf(event, roles);
+  return hand.empty() ? event.event : event.event + " of " + hand;
+}
+
 std::vector<std::string> AlignColumns(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {

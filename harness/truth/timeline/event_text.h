@@ -43,6 +43,16 @@ std::string RoleText(const grammar::NamedEvent& event, std::size_t column);
 /// The value of a role or attribute, or "".
 const std::string& RoleValue(const grammar::NamedEvent& event, std::string_view role);
 
+/// By event the role of the one hand that it is of, as its class says; "" if there is none.
+using HandRoles = std::map<std::string, std::string>;
+HandRoles HandRolesOf(const std::vector<grammar::EventSignature>& events);
+
+/// The hand that an event is of, or "". Of events that are not in `roles`: their role "hand".
+const std::string& HandOf(const grammar::NamedEvent& event, const HandRoles& roles);
+
+/// "grasping of left_hand", or without a hand "contact".
+std::string NameByHand(const grammar::NamedEvent& event, const HandRoles& roles);
+
 /// Rows of cells as lines with aligned columns, two blanks apart, no trailing blanks.
 std::vector<std::string> AlignColumns(const std::vector<std::vector<std::string>>& rows);
 

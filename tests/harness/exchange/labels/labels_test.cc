@@ -284,7 +284,7 @@ TEST_F(Labels, EafHasTheStructureOfItsSchema) {
                                .roles = {{"hand", "right_hand"}, {"object", "cup"}},
                                .interval = {begin, begin + 30}});
   pugi::xml_document document;
-  ASSERT_TRUE(document.load_string(LabelsText(".eaf", timeline, 100, "2026-01-02").c_str()));
+  ASSERT_TRUE(document.load_string(LabelsText(".eaf", timeline, {}, 100, "2026-01-02").c_str()));
   const pugi::xml_node root = document.child("ANNOTATION_DOCUMENT");
   for (const char* attribute : {"DATE", "AUTHOR", "VERSION"})
     EXPECT_TRUE(root.attribute(attribute)) << attribute;
@@ -458,7 +458,7 @@ TEST_F(Labels, WhatIsFoundIsComparedInTheRolesOfTheLabels) {
   add("grasping", "can", 30, 40);
   EXPECT_EQ(Text(Compared(found, {{"reaching", {"hand"}}})),
             "reaching(right_hand) 0..20; reaching(right_hand) 30..40; ");
-  EXPECT_EQ(ByHand(found).events[0].event, "reaching of right_hand");
+  EXPECT_EQ(ByHand(found, {}).events[0].event, "reaching of right_hand");
 }
 
 TEST_F(Labels, FaultyMapsAreNamed) {
@@ -526,7 +526,7 @@ TEST_F(Labels, WhatIsWrittenIsReadAgain) {
   Sort(timeline);
   for (const char* ending : {".csv", ".eaf", ".TextGrid"}) {
     const auto file = ReadLabels(
-        File(std::string("a") + ending, LabelsText(ending, timeline, 1000, "2026-01-31")));
+        File(std::string("a") + ending, LabelsText(ending, timeline, {}, 1000, "2026-01-31")));
     ASSERT_TRUE(file) << grammar::Format(file.error());
     const auto reading = LabelReading::Of({*file}, nullptr, kEvents);
     ASSERT_TRUE(reading) << grammar::Format(reading.error());

@@ -30,6 +30,27 @@ TEST(Tracks, TwoHandsAFrameApartAreTwoSequences) {
   EXPECT_EQ(Edit(Hands(51, 50, "hand"), Hands(50, 51, "hand")), 100);
 }
 
+// Of an event of the grammar, its one role of the class Hand; two hands do what neither does.
+TEST(Tracks, TheClassSaysWhichRoleIsTheHand) {
+  const truth::HandRoles hands = truth::HandRolesOf(
+      {{.name = "reach", .roles = {"h", "object"}, .classes = {"Hand", "Thing"}},
+       {.name = "give", .roles = {"h", "taker"}, .classes = {"Hand", "Hand"}},
+       {.name = "shown", .roles = {"hand", "who"}, .classes = {"Thing", "Hand"}},
+       {.name = "resting", .roles = {"hand"}, .classes = {"Thing"}}});
+  const auto name = [&](const char* event, std::vector<grammar::Role> roles) {
+    return truth::NameByHand(Of(event, std::move(roles), 0, 10), hands);
+  };
+  EXPECT_EQ(name("reach", {{"h", "left"}, {"object", "cup"}}), "reach of left");
+  EXPECT_EQ(name("give", {{"h", "left"}, {"taker", "right"}}), "give");
+  EXPECT_EQ(name("shown", {{"hand", "glove"}, {"who", "right"}}), "shown of right");
+  EXPECT_EQ(name("resting", {{"hand", "glove"}}), "resting");
+  EXPECT_EQ(name("somebody_elses", {{"hand", "left"}}), "somebody_elses of left");
+  const Events two = {Of("reach", {{"h", "left"}, {"object", "cup"}}, 0, 10),
+                      Of("reach", {{"h", "left"}, {"object", "can"}}, 20, 30)};
+  EXPECT_EQ(TracksOf({100, two}, {100, two}, 1000).size(), 2u);
+  EXPECT_EQ(TracksOf({100, two}, {100, two}, 1000, hands).size(), 1u);
+}
+
 // What lasts while others happen is no part of their sequence.
 TEST(Tracks, WhatOverlapsIsNoSequence) {
   const std::vector<grammar::Role> roles = {{"hand", "right"}, {"object", "cup"}};
