@@ -60,7 +60,6 @@ inline bool IsRootClass(std::string_view name) {
       "BodyPart", "Grains", "Abstract", "Region", "GazeTarget", "Camera",   "Light"};
   return std::ranges::find(kRoots, name) != kRoots.end();
 }
-
 /// Of the classes that somebody gives an entity the first that is a root, but none of its `own`;
 /// "" if there is none.
 inline std::string WrongRoot(const std::vector<std::string>& given,
