@@ -71,6 +71,38 @@ TEST_F(OwnProject, ComesFirstAndWhatShipsSecond) {
   EXPECT_TRUE(Has(unknown.err, (kitchen_ / "grammars").string())) << unknown.err;
 }
 
+/// A grammar of the library, with a change.
+std::string Changed(const std::string& name, const std::string& from, const std::string& to) {
+  return Replaced(ReadFile(fs::path(PREHEND_SOURCE_DIR) / "grammar/library" / (name + ".grammar")),
+                  from, to);
+}
+
+TEST_F(OwnProject, WhatComesToBeLookedForFirstIsAChange) {
+  ASSERT_EQ(Do({"accept", "carton_is_held_still", "--reason", "as it says"}).exit_code, 0);
+  const std::vector<std::string> check = {"check", "--no-pictures", "--changed"};
+  ASSERT_EQ(Do(check).exit_code, 0);
+  const auto is_unchanged = [&](const Said& said) { return Has(said.out, "1 unchanged"); };
+  EXPECT_TRUE(is_unchanged(Do(check))) << Do(check).out;
+  const fs::path hands = fs::path(PREHEND_SOURCE_DIR) / "physics/library";
+  const std::string pick_and_place = "grammars/pick_and_place.grammar",
+                    hand = "hands/human_right.hand.yaml";
+  WriteFile(kitchen_ / pick_and_place, Changed("pick_and_place", "grammar pick_and_place\n",
+                                               "grammar pick_and_place\n# mine\n"));
+  EXPECT_FALSE(is_unchanged(Do(check))) << pick_and_place;
+  EXPECT_TRUE(is_unchanged(Do(check))) << pick_and_place;
+  WriteFile(kitchen_ / "grammars/grasp.grammar",
+            Changed("grasp", "grip_sides   = 2", "grip_sides   = 4"));
+  const Said failed = Do(check);
+  EXPECT_EQ(failed.exit_code, 1) << "used by it: " << failed.out;
+  fs::remove(kitchen_ / "grammars/grasp.grammar");
+  EXPECT_EQ(Do(check).exit_code, 0);
+  WriteFile(kitchen_ / "hands/human.grasps.yaml", ReadFile(hands / "human.grasps.yaml"));
+  EXPECT_TRUE(is_unchanged(Do(check))) << "the hand that ships has its own beside it";
+  WriteFile(kitchen_ / hand, ReadFile(hands / "human_right.hand.yaml") + "# mine\n");
+  EXPECT_FALSE(is_unchanged(Do(check))) << hand;
+  EXPECT_TRUE(is_unchanged(Do(check))) << hand;
+}
+
 TEST_F(OwnProject, ItsHandsAreFound) {
   const fs::path library = fs::path(PREHEND_SOURCE_DIR) / "physics/library";
   fs::create_directories(kitchen_ / "hands");

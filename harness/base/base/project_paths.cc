@@ -14,6 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kGrammars = "grammars";
+constexpr const char* kHands = "hands";
 constexpr const char* kLibrary = "grammar/library";
 constexpr const char* kInstalled = "share/prehend";
 
@@ -60,13 +62,12 @@ std::vector<std::string> Names(const std::vector<std::string>& folders, std::str
   return names;
 }
 
-std::string PathIn(const std::vector<std::string>& folders, const std::string& file) {
+std::string Found(const fs::path& own, const fs::path& library, std::vector<std::string>* tried) {
   std::error_code error;
-  for (const std::string& folder : folders) {
-    const fs::path path = fs::path(folder) / file;
-    if (fs::symlink_status(path, error).type() != fs::file_type::not_found) return path.string();
-  }
-  return (fs::path(folders.back()) / file).string();
+  if (tried) tried->push_back(own.string());
+  if (fs::symlink_status(own, error).type() != fs::file_type::not_found) return own.string();
+  if (tried) tried->push_back(library.string());
+  return library.string();
 }
 
 }  // namespace
@@ -96,10 +97,10 @@ bool IsCalledIn(const std::string& root) {
 }
 
 std::vector<std::string> GrammarFolders(const std::string& root) {
-  return Folders(root, "grammars", kLibrary);
+  return Folders(root, kGrammars, kLibrary);
 }
 std::vector<std::string> HandFolders(const std::string& root) {
-  return Folders(root, "hands", "physics/library");
+  return Folders(root, kHands, "physics/library");
 }
 
 std::optional<std::string> FindProjectRoot() {
@@ -143,11 +144,16 @@ std::vector<std::string> HandNames(const std::string& root) {
 
 std::string Shipped(const std::string& path) { return ShippedRoot() + "/" + path; }
 
-std::string GrammarPath(const std::string& root, const std::string& name) {
-  return PathIn(GrammarFolders(root), name + kGrammarEnding);
+std::string GrammarPath(const std::string& root, const std::string& name,
+                        std::vector<std::string>* tried) {
+  const std::string file = name + kGrammarEnding;
+  return Found(fs::path(root) / kGrammars / file, GrammarFolders(root).back() / fs::path(file),
+               tried);
 }
-std::string HandPath(const std::string& root, const std::string& name) {
-  return PathIn(HandFolders(root), name + kHandEnding);
+std::string HandPath(const std::string& root, const std::string& name,
+                     std::vector<std::string>* tried) {
+  const std::string file = name + kHandEnding;
+  return Found(fs::path(root) / kHands / file, HandFolders(root).back() / fs::path(file), tried);
 }
 
 }  // namespace prehend

@@ -56,9 +56,11 @@ std::vector<std::string> HandNames(const std::string& root);
 std::string Shipped(const std::string& path);
 
 /// FOLDER/NAME.grammar and FOLDER/NAME.hand.yaml in the first folder that has the file; if none
-/// has, in the last one.
-std::string GrammarPath(const std::string& root, const std::string& name);
-std::string HandPath(const std::string& root, const std::string& name);
+/// has, in the last one. `tried` gets the path, after the one where it was looked for first.
+std::string GrammarPath(const std::string& root, const std::string& name,
+                        std::vector<std::string>* tried = nullptr);
+std::string HandPath(const std::string& root, const std::string& name,
+                     std::vector<std::string>* tried = nullptr);
 
 inline constexpr const char* kDefaultGrammar = "pick_and_place";
 

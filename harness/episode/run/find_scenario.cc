@@ -75,7 +75,8 @@ scenario::ScenarioLibrary ProjectLibrary(const std::string& root, std::vector<st
               [root, files, known](const std::string& name_or_path,
                                    const std::vector<std::string>& grasps) {
                 const bool is_path = name_or_path.ends_with(".yaml");
-                const std::string path = is_path ? name_or_path : HandPath(root, name_or_path);
+                const std::string path =
+                    is_path ? name_or_path : HandPath(root, name_or_path, files);
                 if (is_path || !grasps.empty()) return scenario::ReadHandModel(path, grasps, files);
                 const auto [found, is_new] = known->try_emplace(path);
                 Known& hand = found->second;

@@ -204,10 +204,12 @@ std::string ScenarioId(const std::string& skill, const std::string& name) {
 
 namespace fs = std::filesystem;
 
-std::string GrammarFile(const std::string& root, const std::string& name_or_path) {
+std::string GrammarFile(const std::string& root, const std::string& name_or_path,
+                        std::vector<std::string>* tried) {
   const bool is_path =
       name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".grammar");
-  return is_path ? name_or_path : GrammarPath(root, name_or_path);
+  if (is_path && tried) tried->push_back(name_or_path);
+  return is_path ? name_or_path : GrammarPath(root, name_or_path, tried);
 }
 
 namespace {
@@ -269,36 +271,10 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
     const auto text = instead.find(path);
     return text == instead.end() ? ReadTextFile(path) : text->second;
   };
-  const auto note = [files](const std::string& path) {
-    if (files) files->push_back(path);
-  };
-  if (name_or_path.find('+') != std::string::npos && !fs::exists(name_or_path)) {
-    const JoinedGrammars all = Join(name_or_path);
-    std::string beside;  // a file's own files are searched there
-    const auto include = [&](std::string_view used) -> std::optional<grammar::GrammarText> {
-      const auto path = all.paths.find(used);
-      std::vector<std::string> candidates = {GrammarPath(root, std::string(used))};
-      if (path != all.paths.end()) {
-        candidates = {path->second};
-        beside = fs::path(path->second).parent_path().string();
-      } else if (used.ends_with(kGrammarEnding)) {
-        candidates = {std::string(used)};
-      } else if (!beside.empty()) {
-        candidates.insert(candidates.begin(), beside + "/" + std::string(used) + kGrammarEnding);
-      }
-      for (const std::string& candidate : candidates) {
-        note(candidate);
-        if (Result<std::string> found = read(candidate))
-          return grammar::GrammarText{candidate, std::move(*found)};
-      }
-      return std::nullopt;
-    };
-    return grammar::Compile({name_or_path, all.text}, include, overrides,
-                            ProjectLibrary(root).grammars);
-  }
-  const std::string file = GrammarFile(root, name_or_path);
-  note(file);
-  Result<std::string> text = read(file);
+  const bool is_joined = name_or_path.find('+') != std::string::npos && !fs::exists(name_or_path);
+  const JoinedGrammars all = is_joined ? Join(name_or_path) : JoinedGrammars{};
+  const std::string file = is_joined ? name_or_path : GrammarFile(root, name_or_path, files);
+  Result<std::string> text = is_joined ? Result<std::string>(all.text) : read(file);
   const std::vector<std::string> known = ProjectLibrary(root).grammars;
   if (!text) {
     const bool is_name = file != name_or_path;
@@ -314,15 +290,24 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
     }
     return {nullptr, std::move(text.error())};
   }
+  fs::path beside = fs::path(file).parent_path();  // a file's own files are searched there
+  bool has_own = !is_joined;
   grammar::Diagnostics unreadable;
   const auto include = [&](std::string_view used) -> std::optional<grammar::GrammarText> {
     const std::string name(used);
-    const std::string beside = (fs::path(file).parent_path() / (name + ".grammar")).string();
-    const std::vector<std::string> candidates = name.ends_with(".grammar")
-                                                    ? std::vector{name}
-                                                    : std::vector{beside, GrammarPath(root, name)};
+    std::vector<std::string> candidates;
+    if (const auto path = all.paths.find(used); path != all.paths.end()) {
+      candidates = {path->second};
+      beside = fs::path(path->second).parent_path();
+      has_own = true;
+    } else if (name.ends_with(kGrammarEnding)) {
+      candidates = {name};
+    } else {
+      if (has_own) candidates.push_back((beside / (name + kGrammarEnding)).string());
+      GrammarPath(root, name, &candidates);
+    }
     for (const std::string& candidate : candidates) {
-      note(candidate);
+      if (files) files->push_back(candidate);
       Result<std::string> found = read(candidate);
       if (found) return grammar::GrammarText{candidate, std::move(*found)};
       std::error_code error;

@@ -24,7 +24,9 @@ namespace prehend::episode {
 // tests/program/command_line_test.cc
 
 /// The file for a name of the library, or for a path (it has a slash, or ends with ".grammar").
-std::string GrammarFile(const std::string& root, const std::string& name_or_path);
+/// `tried` gets it, and where it would be found first.
+std::string GrammarFile(const std::string& root, const std::string& name_or_path,
+                        std::vector<std::string>* tried = nullptr);
 
 /// What is read instead of files: path -> text.
 using GrammarTexts = std::map<std::string, std::string>;
