@@ -77,6 +77,35 @@ std::string Changed(const std::string& name, const std::string& from, const std:
                   from, to);
 }
 
+TEST_F(OwnProject, ItsGrammarComesFirstAlsoWhereAnotherUsesIt) {
+  for (const char* grammar : {"pick_and_place", "tabletop", "kitchen", "pick_and_place+gaze"}) {
+    const std::vector<std::string> run = {"run", "milk_carton_wrap", "--grammar", grammar};
+    EXPECT_TRUE(Has(Do(run).out, "grasping")) << grammar;
+    WriteFile(kitchen_ / "grammars/grasp.grammar",
+              Changed("grasp", "grip_sides   = 2", "grip_sides   = 4"));
+    const Said own = Do(run);
+    EXPECT_EQ(own.exit_code, 0) << own.err;
+    EXPECT_FALSE(Has(own.out, "grasping")) << grammar << "\n" << own.out;
+    fs::remove(kitchen_ / "grammars/grasp.grammar");
+  }
+  // An episode keeps it, and no other of its file has it.
+  WriteFile(kitchen_ / "grammars/grasp.grammar",
+            Changed("grasp", "grip_sides   = 2", "grip_sides   = 4"));
+  const std::vector<std::string> record = {"run", "milk_carton_wrap", "--record", "own.episodes"};
+  ASSERT_EQ(Do(record).exit_code, 0);
+  fs::remove(kitchen_ / "grammars/grasp.grammar");
+  ASSERT_EQ(Do(record).exit_code, 0);
+  WriteFile(kitchen_ / "grammars/pick_and_place.grammar",
+            Changed("pick_and_place", "lift_rise   = 3 cm", "lift_rise   = 50 cm"));
+  ASSERT_EQ(Do(record).exit_code, 0);
+  fs::remove(kitchen_ / "grammars/pick_and_place.grammar");
+  ASSERT_EQ(Do(record).exit_code, 0);
+  fs::rename(kitchen_ / "own.episodes", folder_ / "own.episodes");
+  const Said again = In(folder_, {"episode", "resegment", "own.episodes", "--against", "recorded"});
+  EXPECT_EQ(again.exit_code, 0) << again.out << again.err;
+  EXPECT_TRUE(Has(again.out, "4 episodes, 0 with differences")) << again.out;
+}
+
 TEST_F(OwnProject, WhatComesToBeLookedForFirstIsAChange) {
   ASSERT_EQ(Do({"accept", "carton_is_held_still", "--reason", "as it says"}).exit_code, 0);
   const std::vector<std::string> check = {"check", "--no-pictures", "--changed"};

@@ -64,13 +64,22 @@ std::string UnpackedTasks::PathOf(const std::string& path) const {
 std::string UnpackedTasks::Unpack(const TaskFiles& task) {
   if (!folder_) folder_.emplace();
   if (!folder_->problem().empty()) return folder_->problem();
+  std::error_code error;
   if (root_.empty()) {
     root_ = folder_->path().string() + "/project";
-    std::error_code error;
     fs::create_directories(root_ + "/grammar/library", error);
     fs::create_directories(root_ + "/physics/library", error);
   }
   for (const auto& [path, content] : task.files) {
+    // What another task's project had in the place of this one would be found first.
+    for (const auto& [own, library] : {std::pair("grammars/", std::string("grammar/library/")),
+                                       std::pair("hands/", std::string("physics/library/"))}) {
+      if (!path.starts_with(library)) continue;
+      const std::string first = own + path.substr(library.size());
+      if (task.files.contains(first) || written_.erase(first) == 0) continue;
+      fs::remove(PathOf(first), error);
+      ++writes_;
+    }
     const std::string hash = ContentHash(content);
     const auto [known, is_new] = written_.try_emplace(path, hash);
     if (!is_new && known->second == hash) continue;

@@ -290,8 +290,10 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
     }
     return {nullptr, std::move(text.error())};
   }
-  fs::path beside = fs::path(file).parent_path();  // a file's own files are searched there
-  bool has_own = !is_joined;
+  // A file's own files are searched beside it. What the library uses may be replaced in the
+  // project.
+  fs::path beside = fs::path(file).parent_path();
+  bool has_own = !is_joined && beside != GrammarFolders(root).back();
   grammar::Diagnostics unreadable;
   const auto include = [&](std::string_view used) -> std::optional<grammar::GrammarText> {
     const std::string name(used);

@@ -33,8 +33,9 @@ using GrammarTexts = std::map<std::string, std::string>;
 
 /// Several are joined with '+': "pick_and_place+furniture+./kitchen.grammar" is compiled as one
 /// grammar that uses all of them, in this order, and is called `pick_and_place_and_furniture_..`.
-/// Grammars that it uses are searched beside it, then in the library. `files` receives every path
-/// that was tried, whether or not the file exists.
+/// Grammars that it uses are searched beside it, then in the project, then in the library; those of
+/// a grammar of the library not beside it. `files` receives every path that was tried, whether or
+/// not the file exists.
 grammar::CompileResult LoadGrammar(const std::string& root, const std::string& name_or_path,
                                    const grammar::Overrides& overrides = {},
                                    std::vector<std::string>* files = nullptr,
