@@ -51,9 +51,12 @@ std::string ReportUnknownKey(const YamlNode& child, const std::string& title,
     errors.Add(child.key_where, message, remedy);
     return "";
   }
-  const bool is_number = child.key.find_first_not_of("0123456789") == std::string::npos;
-  if (is_number && child.kind == YamlNode::Kind::kNull) {
-    errors.Add(child.key_where, message, "decimals have a point: 0.5");
+  const bool is_number = child.key.find_first_not_of("0123456789") == std::string::npos,
+             closes_call = child.key.find(')') != std::string::npos;
+  if ((is_number || closes_call) && child.kind == YamlNode::Kind::kNull) {
+    errors.Add(child.key_where, message,
+               is_number ? "decimals have a point: 0.5"
+                         : "in {..} a comma ends a value: put one with a comma in quotes");
     return "";
   }
   errors.AddUnknownName(child.key_where, message, child.key, known);

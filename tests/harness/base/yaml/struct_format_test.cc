@@ -97,6 +97,12 @@ TEST(FieldTable, AMisspeltRequiredKeyIsOneComplaint) {
             "1:1: unknown key 'radius_mm' in a wheel | did you mean 'radius_m'?\n");
 }
 
+TEST(FieldTable, ACommaInBracesWantsQuotes) {
+  EXPECT_EQ(scenario::Brief(ErrorsOf(ReadWheel("{radius_m: 1, label: near(hub, rim)}"))),
+            "1:32: unknown key 'rim)' in a wheel | in {..} a comma ends a value: put one with a "
+            "comma in quotes\n");
+}
+
 TEST(FieldTable, ExclusiveKeys) {
   EXPECT_EQ(scenario::Brief(ErrorsOf(ReadWheel("radius_m: 1\nspokes: 3\nlabel: x\n"))),
             "3:1: a wheel cannot have both 'spokes' and 'label'\n");
