@@ -2,6 +2,8 @@
 // Recorded episodes and scores, as a person uses them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -41,6 +43,44 @@ TEST(Recording, WhatBadSensorsSawIsSegmentedAgainAsItWas) {
   const auto first = nlohmann::json::parse(played.out), second = nlohmann::json::parse(again.out);
   EXPECT_EQ(first["events"], second["events"]);
   EXPECT_FALSE(first["events"].empty());
+}
+
+/// Files of scenarios that ship.
+std::vector<std::string> ShippedScenarios() {
+  std::vector<std::string> files;
+  for (const auto& one : std::filesystem::recursive_directory_iterator(
+           std::filesystem::path(PREHEND_SOURCE_DIR) / "scenarios")) {
+    const std::string folder = one.path().parent_path().filename().string();
+    if (one.path().extension() == ".yaml" && folder != "invalid" && folder != "templates" &&
+        ReadFile(one.path()).find("\nscript:") != std::string::npos)
+      files.push_back(one.path().string());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+/// Played, and recorded as lines; `grammar` is that of both.
+void ExpectSegmentedAgainAsItWas(const std::string& scenario, const std::filesystem::path& folder) {
+  const auto file = (folder / "recorded.jsonl").string();
+  const Said played = Prehend({"run", scenario, "--json", "--record", file});
+  ASSERT_EQ(played.exit_code, 0) << scenario << "\n" << played.err;
+  const Said again = Prehend({"episode", "resegment", file, "--json"});
+  ASSERT_EQ(again.exit_code, 0) << scenario << "\n" << again.err;
+  const auto first = nlohmann::json::parse(played.out), second = nlohmann::json::parse(again.out);
+  EXPECT_EQ(first["grammar"], second["grammar"]) << scenario;
+  EXPECT_EQ(first["events"], second["events"]) << scenario;
+}
+
+TEST(Recording, OfPersonsAndOthersIsSegmentedAgainAsItWas) {
+  const auto folder = FreshFolder("all_alike");
+  std::size_t persons = 0, others = 0;
+  for (const std::string& scenario : ShippedScenarios()) {
+    const bool has_person = ReadFile(scenario).find("person:") != std::string::npos;
+    if (!has_person && ++others % 40 != 0) continue;
+    persons += has_person ? 1 : 0;
+    ExpectSegmentedAgainAsItWas(scenario, folder);
+  }
+  EXPECT_GE(persons, 17u);
 }
 
 /// The events of this name in what `--json` printed.

@@ -31,7 +31,7 @@ void AddClasses(const std::vector<std::string>& classes, Json& json) {
   json["fixed"] = *given == "Fixed";
   if (*given == "Jointed") json["jointed"] = true;
   if (*given == "Attached") json["attached"] = true;
-  if (*given == "Entity") json["person"] = true;
+  if (*given == "Entity" || *given == "BodyPart") json["person"] = true;
   if (*given == "Grains") json["grains"] = true;
   if (given + 1 != classes.end() && *(given + 1) == "Abstract") json["abstract"] = *given;
 }

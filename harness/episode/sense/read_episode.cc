@@ -277,6 +277,7 @@ class EpisodeReader {
   static std::vector<std::string> RootsOf(const MemberEntry& m) {
     if (!m.abstract.empty()) return {m.abstract, "Abstract", "Entity"};
     if (m.grains) return {"Grains", "Entity"};
+    if (m.person && m.part_of) return {"BodyPart", "Entity"};
     if (m.person) return {"Entity"};
     return {m.fixed      ? "Fixed"
             : m.jointed  ? "Jointed"
