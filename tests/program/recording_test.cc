@@ -83,6 +83,49 @@ TEST(Recording, OfPersonsAndOthersIsSegmentedAgainAsItWas) {
   EXPECT_GE(persons, 17u);
 }
 
+TEST(Recording, OfSeveralGrammarsNamesThemAll) {
+  const auto folder = FreshFolder("several");
+  std::size_t several = 0;
+  for (const std::string& scenario : ShippedScenarios()) {
+    const std::string text = ReadFile(scenario);
+    const std::size_t list = text.find("\ngrammar: [");
+    if (list == std::string::npos || text.find(',', list) > text.find('\n', list + 1)) continue;
+    ++several;
+    ExpectSegmentedAgainAsItWas(scenario, folder);
+  }
+  EXPECT_GE(several, 3u);
+
+  // The one of an episode file, too.
+  const auto episodes = (folder / "hook.episodes").string(),
+             file = (folder / "hook.jsonl").string();
+  const std::string hook = "force/a_hook_holds_on_while_it_pulls";
+  const Said played = Prehend({"run", hook, "--json", "--record", episodes});
+  ASSERT_EQ(Prehend({"episode", "export", episodes, "--to", "jsonl", "-o", file}).exit_code, 0);
+  const std::string written = ReadFile(file);
+  const auto header = nlohmann::json::parse(written.substr(0, written.find('\n')));
+  EXPECT_EQ(header["grammar"], (std::vector<std::string>{"pick_and_place", "force"}));
+  const Said again = Prehend({"episode", "resegment", file, "--json"});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  const auto first = nlohmann::json::parse(played.out), second = nlohmann::json::parse(again.out);
+  EXPECT_EQ(first["events"], second["events"]);
+  EXPECT_EQ(first["grammar"], second["grammar"]);
+
+  // Into an episode file and out of it, as lines of others.
+  const auto imported = (folder / "imported.episodes").string();
+  const Said import = Prehend({"import", file, "-o", imported});
+  ASSERT_EQ(import.exit_code, 0) << import.err;
+  const Said kept = Prehend({"episode", "resegment", imported, "--against", "recorded"});
+  EXPECT_EQ(kept.exit_code, 0) << kept.err << kept.out;
+
+  // One that is not known is named where the recording says it.
+  WriteFile(file,
+            Replaced(written, R"(["pick_and_place","force"])", R"(["pick_and_place","frce"])"));
+  const Said unknown = Prehend({"episode", "resegment", file});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_NE(unknown.err.find(file + ":1:"), std::string::npos) << unknown.err;
+  EXPECT_NE(unknown.err.find("no grammar is called 'frce'"), std::string::npos) << unknown.err;
+}
+
 /// The events of this name in what `--json` printed.
 std::vector<nlohmann::json> EventsNamed(const std::string& name, const Said& said) {
   EXPECT_EQ(said.exit_code, 0) << said.err;

@@ -135,6 +135,16 @@ std::vector<std::string> NamesIn(const std::string& folder, std::string_view end
   return names;
 }
 
+std::vector<std::string> SplitGrammars(const std::string& joined) {
+  std::vector<std::string> grammars;
+  for (std::size_t begin = 0; begin <= joined.size();) {
+    const std::size_t end = std::min(joined.find('+', begin), joined.size());
+    grammars.push_back(joined.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return grammars;
+}
+
 std::vector<std::string> GrammarNames(const std::string& root) {
   return Names(GrammarFolders(root), kGrammarEnding);
 }

@@ -48,6 +48,9 @@ std::vector<std::string> FilesIn(const std::string& folder, std::string_view end
 /// asked for.
 std::vector<std::string> NamesIn(const std::string& folder, std::string_view ending);
 
+/// What stands between '+' where several grammars are named.
+std::vector<std::string> SplitGrammars(const std::string& joined);
+
 /// The names of all grammars and hands of a project, sorted, each once.
 std::vector<std::string> GrammarNames(const std::string& root);
 std::vector<std::string> HandNames(const std::string& root);

@@ -211,7 +211,7 @@ ExitCode PlayOne(const episode::ScenarioFile& file, const episode::RunRequest& r
   if (!lock) return Refuse(context, "--record: " + lock.error());
   std::optional<episode::RunRecorder> recorder;
   if (options.Has("--record")) {
-    recorder.emplace(RecordingOf(request, files, options, context), loaded->scenario);
+    recorder.emplace(RecordingOf(request, files, options, context), *loaded);
     if (!recorder->problem().empty()) return Refuse(context, "--record: " + recorder->problem());
   }
   const episode::RunResult run = episode::PlayScenario(

@@ -59,7 +59,7 @@ EpisodeHeader Episode::Header() const {
   if (recording_) return recording_->header;
   const std::string& name = name_.scenario;
   return {.episode = name.substr(name.rfind('/') + 1),
-          .grammar = loaded_.scenario.grammar,
+          .grammar = NameToRecord(loaded_),
           .entity_table = entities()};
 }
 

@@ -60,7 +60,7 @@ namespace fs = std::filesystem;
 /// Plays a scenario into a file. Returns what went wrong.
 grammar::Diagnostics Record(RecordRequest request) {
   PREHEND_TRY(const LoadedRun loaded, LoadRun(request.run, request.root, &request.files));
-  RunRecorder recorder(request, loaded.scenario);
+  RunRecorder recorder(request, loaded);
   PlayScenario(loaded, {}, &recorder);
   if (recorder.problem().empty()) return {};
   return {{.file = request.file, .message = recorder.problem()}};

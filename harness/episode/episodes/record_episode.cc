@@ -112,7 +112,8 @@ void WriteEvents(const Database& database, std::int64_t episode, const grammar::
 
 }  // namespace
 
-RunRecorder::RunRecorder(const RecordRequest& request, const scenario::Scenario& scenario) {
+RunRecorder::RunRecorder(const RecordRequest& request, const LoadedRun& loaded) {
+  const scenario::Scenario& scenario = loaded.scenario;
   if (IsEpisodeFile(request.file)) {
     episode_.emplace(request, scenario);
     return;
@@ -121,7 +122,7 @@ RunRecorder::RunRecorder(const RecordRequest& request, const scenario::Scenario&
   problem_ = file_->problem();
   if (problem_.empty())
     lines_.emplace(file_->stream(), EpisodeHeader{.episode = scenario.name,
-                                                  .grammar = scenario.grammar,
+                                                  .grammar = NameToRecord(loaded),
                                                   .entity_table = MakeEntityTable(scenario)});
 }
 
@@ -152,7 +153,7 @@ RunResult PlayScenario(const LoadedRun& loaded, const RunOptions& how, RunRecord
 }
 
 TrialResult RecordTrial(int trial, const LoadedRun& loaded, const RecordRequest& request) {
-  RunRecorder recorder(request, loaded.scenario);
+  RunRecorder recorder(request, loaded);
   const RunResult run = PlayScenario(loaded, {}, &recorder);
   const bool completed = run.status.kind == physics::RunStatus::Kind::kCompleted;
   return {trial, completed ? run.outcome : "failed",

@@ -78,7 +78,7 @@ tl::expected<WriteLock, std::string> LockToRecord(const std::string& file, Write
 class RunRecorder {
  public:
   /// `request.file` is not empty. Errors, here and later, are told by problem().
-  RunRecorder(const RecordRequest& request, const scenario::Scenario& scenario);
+  RunRecorder(const RecordRequest& request, const LoadedRun& loaded);
 
   void Add(ScenarioRun& playing);
   void Finish(const RunResult& run);

@@ -216,23 +216,22 @@ namespace {
 
 /// A grammar that uses all of these: its text, and where each is.
 struct JoinedGrammars {
-  std::string text;
+  std::string name, text;
+  std::string names;                                      ///< of all, joined with '+'
   std::map<std::string, std::string, std::less<>> paths;  ///< by name; only of files
 };
 
 JoinedGrammars Join(const std::string& joined) {
   JoinedGrammars all;
-  std::string name, uses;
-  for (std::size_t begin = 0; begin <= joined.size();) {
-    const std::size_t end = std::min(joined.find('+', begin), joined.size());
-    const std::string one = joined.substr(begin, end - begin);
-    begin = end + 1;
+  std::string uses;
+  for (const std::string& one : SplitGrammars(joined)) {
     const std::string stem = one.ends_with(kGrammarEnding) ? fs::path(one).stem().string() : one;
     if (stem != one) all.paths[stem] = one;
-    name += (name.empty() ? "" : "_and_") + stem;
+    all.name += (all.name.empty() ? "" : "_and_") + stem;
+    all.names += (all.names.empty() ? "" : "+") + stem;
     uses += "use " + stem + "\n";
   }
-  all.text = "grammar " + name + "\n" + uses;
+  all.text = "grammar " + all.name + "\n" + uses;
   return all;
 }
 
@@ -326,18 +325,26 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
   return {nullptr, std::move(unreadable)};
 }
 
+std::string NameToRecord(const LoadedRun& loaded) {
+  const JoinedGrammars all = Join(loaded.grammar);
+  const std::string name = GrammarName(*loaded.program);
+  return all.name == name ? all.names : name;
+}
+
 grammar::CompileResult LoadGrammarOf(const EpisodeHeader& recording, const std::string& asked,
                                      const std::string& root, const grammar::Overrides& overrides,
                                      std::vector<std::string>* files) {
-  const std::string& own = recording.grammar;
+  const std::vector<std::string> own = SplitGrammars(recording.grammar), known = GrammarNames(root);
   grammar::CompileResult compiled =
-      LoadGrammar(root, asked.empty() ? own : asked, overrides, files);
-  const bool is_name = GrammarFile(root, own) != own && own.find('+') == std::string::npos;
-  if (compiled.program || !asked.empty() || !is_name || recording.grammar_named.file.empty() ||
-      std::ranges::count(GrammarNames(root), own) > 0)
+      LoadGrammar(root, asked.empty() ? recording.grammar : asked, overrides, files);
+  const auto other = std::ranges::find_if(own, [&](const std::string& one) {
+    return GrammarFile(root, one) != one && std::ranges::count(known, one) == 0;
+  });
+  if (compiled.program || !asked.empty() || other == own.end() ||
+      recording.grammar_named.file.empty())
     return compiled;
   grammar::Diagnostic unknown = recording.grammar_named;
-  unknown.message = fmt::format("grammar: no grammar is called '{}'", own);
+  unknown.message = fmt::format("grammar: no grammar is called '{}'", *other);
   unknown.hint = compiled.diagnostics.front().hint;
   if (unknown.hint.starts_with("there are"))  // no name is near
     unknown.hint.insert(0, "if it is a file of yours, --grammar FILE names it; ");

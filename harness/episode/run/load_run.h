@@ -70,6 +70,9 @@ struct LoadedRun {
   std::string grammar = {};    ///< the name or path that `program` was compiled from
 };
 
+/// What a recording says of its grammar: its name, or those of several joined with '+'.
+std::string NameToRecord(const LoadedRun& loaded);
+
 /// `files` receives every path that was tried, also if there is no result.
 Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
                           std::vector<std::string>* files = nullptr);

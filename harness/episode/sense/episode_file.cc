@@ -12,6 +12,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "harness/base/base/project_paths.h"
+#include "harness/scenario/scenario/scenario.h"
+
 namespace prehend::episode {
 namespace {
 
@@ -247,7 +250,10 @@ EpisodeWriter::EpisodeWriter(std::ostream& out, const EpisodeHeader& header,
   for (const grammar::EntityInfo& member : entity_table_.entities)
     entities[member.name] = MemberJson(member, entity_table_);
   Json first = {{"recording", kEpisodeVersion}, {"episode", header.episode}};
-  if (!header.grammar.empty()) first["grammar"] = header.grammar;
+  if (const auto several = SplitGrammars(header.grammar); several.size() > 1)
+    first["grammar"] = several;
+  else if (!header.grammar.empty())
+    first["grammar"] = header.grammar;
   first["ticks_per_second"] = entity_table_.ticks_per_second;
   if (header.bridge_s != kBridge_s) first["bridge_s"] = header.bridge_s;
   if (header.attributes.success) first["success"] = *header.attributes.success;

@@ -75,7 +75,7 @@ struct EpisodeAttributes {
 /// The first line.
 struct EpisodeHeader {
   std::string episode;  ///< its name: of the scenario that was recorded
-  std::string grammar;  ///< which grammar segments it unless another one is asked for
+  std::string grammar;  ///< what segments it unless another one is asked for; several with '+'
   /// Where a file names the grammar: the rest of an error about it. Without a file: nowhere.
   grammar::Diagnostic grammar_named = {};
   double bridge_s = kBridge_s;  ///< for so long a missing look is as the last one

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "harness/scenario/format/scenario_fields.h"
+
 namespace prehend::episode {
 namespace {
 
@@ -150,7 +152,7 @@ ValueFormat<HeaderEntry> HeaderFormat() {
   return StructFormat<H>("the first line")
       .Required("recording", &H::version, Integer<int>(kEpisodeVersion, kEpisodeVersion), "")
       .Required("episode", &H::episode, Name(), "")
-      .Optional("grammar", &H::grammar, Name(), "")
+      .Optional("grammar", &H::grammar, scenario::OneOrJoined(Name()), "")
       .Required("ticks_per_second", &H::ticks_per_second, Integer<std::int64_t>(1, 1'000'000), "")
       .Optional("bridge_s", &H::bridge_s, Number(0, 60), "")
       .Optional("success", &H::success, Flag(), "")

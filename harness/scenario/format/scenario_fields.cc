@@ -110,21 +110,10 @@ ValueFormat<PictureYaml> PictureFormat() {
       .format();
 }
 
-/// A name, a file beside the scenario, or several of them, which are joined with '+'.
+/// Names, or files beside the scenario.
 ValueFormat<std::string> GrammarsFormat() {
-  constexpr std::size_t kMaxGrammars = 16;
-  const auto one = Word("[a-z][a-z0-9_]*|\\./[A-Za-z0-9_./-]*[a-z][a-z0-9_]*\\.grammar",
-                        "a name like 'pick_and_place', or a file like './kitchen.grammar'", 255);
-  const auto several = ListOf(one, 1, kMaxGrammars);
-  const auto read = [one, several](const YamlNode& node, DiagnosticList& errors,
-                                   std::string& value) {
-    if (node.kind != YamlNode::Kind::kSequence) return one.Read(node, errors, value);
-    std::vector<std::string> names;
-    if (!several.Read(node, errors, names)) return false;
-    value = fmt::format("{}", fmt::join(names, "+"));
-    return true;
-  };
-  return ValueFormat<std::string>(AnyOf({one.schema(), several.schema()}), read)
+  return OneOrJoined(Word("[a-z][a-z0-9_]*|\\./[A-Za-z0-9_./-]*[a-z][a-z0-9_]*\\.grammar",
+                          "a name like 'pick_and_place', or a file like './kitchen.grammar'", 255))
       .ShownAs(Identifier());
 }
 
@@ -305,6 +294,20 @@ struct Edit {
 };
 
 }  // namespace
+
+ValueFormat<std::string> OneOrJoined(const ValueFormat<std::string>& one) {
+  constexpr std::size_t kMaxGrammars = 16;
+  const auto several = ListOf(one, 1, kMaxGrammars);
+  const auto read = [one, several](const YamlNode& node, DiagnosticList& errors,
+                                   std::string& value) {
+    if (node.kind != YamlNode::Kind::kSequence) return one.Read(node, errors, value);
+    std::vector<std::string> names;
+    if (!several.Read(node, errors, names)) return false;
+    value = fmt::format("{}", fmt::join(names, "+"));
+    return true;
+  };
+  return ValueFormat<std::string>(AnyOf({one.schema(), several.schema()}), read);
+}
 
 const ValueFormat<ScenarioYaml>& ScenarioFormat() {
   static const ValueFormat<ScenarioYaml> format = BuildScenarioFormat();

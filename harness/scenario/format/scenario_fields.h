@@ -12,6 +12,9 @@
 
 namespace prehend::scenario {
 
+/// A grammar, or a list of them, which are joined with '+'.
+ValueFormat<std::string> OneOrJoined(const ValueFormat<std::string>& one);
+
 /// Built once: its schemas take longer to build than most scenarios take to read.
 const ValueFormat<ScenarioYaml>& ScenarioFormat();
 

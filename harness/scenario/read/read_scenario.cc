@@ -28,17 +28,6 @@ namespace {
 using grammar::Diagnostics;
 using std::filesystem::path;
 
-/// What stands between '+' in the value of `grammar`.
-std::vector<std::string> SplitGrammars(const std::string& joined) {
-  std::vector<std::string> grammars;
-  for (std::size_t begin = 0; begin <= joined.size();) {
-    const std::size_t end = std::min(joined.find('+', begin), joined.size());
-    grammars.push_back(joined.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return grammars;
-}
-
 /// The same with the paths of files beside the scenario.
 std::string GrammarsBeside(const std::string& joined, const std::string& file) {
   std::string all;
