@@ -70,10 +70,9 @@ void CheckOrientation(const ImportMap& map, DiagnosticList& errors) {
 void CheckTwice(const std::vector<Located<std::string>>& names, const char* has,
                 DiagnosticList& errors) {
   std::set<std::string> taken;
-  for (const Located<std::string>& name : names)
-    if (!taken.insert(name.value).second)
-      errors.Add(name.where, fmt::format("'{}' is named twice", name.value),
-                 fmt::format("each {} of its own", has));
+  for (const auto& [name, where] : names)
+    if (!taken.insert(name).second)
+      errors.Add(where, "'" + name + "' is named twice", fmt::format("each {} of its own", has));
 }
 
 /// What only files of comma-separated values have.
