@@ -32,11 +32,11 @@ TEST(Tracks, TwoHandsAFrameApartAreTwoSequences) {
 
 // Of an event of the grammar, its one role of the class Hand; two hands do what neither does.
 TEST(Tracks, TheClassSaysWhichRoleIsTheHand) {
-  const truth::HandRoles hands = truth::HandRolesOf(
-      {{.name = "reach", .roles = {"h", "object"}, .classes = {"Hand", "Thing"}},
-       {.name = "give", .roles = {"h", "taker"}, .classes = {"Hand", "Hand"}},
-       {.name = "shown", .roles = {"hand", "who"}, .classes = {"Thing", "Hand"}},
-       {.name = "resting", .roles = {"hand"}, .classes = {"Thing"}}});
+  const truth::HandRoles hands =
+      truth::HandRolesOf({{.name = "reach", .roles = {"h", "object"}, .classes = {"Hand", "Thing"}},
+                          {.name = "give", .roles = {"h", "taker"}, .classes = {"Hand", "Hand"}},
+                          {.name = "shown", .roles = {"hand", "who"}, .classes = {"Thing", "Hand"}},
+                          {.name = "resting", .roles = {"hand"}, .classes = {"Thing"}}});
   const auto name = [&](const char* event, std::vector<grammar::Role> roles) {
     return truth::NameByHand(Of(event, std::move(roles), 0, 10), hands);
   };
