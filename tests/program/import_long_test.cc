@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tables of poses that are long: what is wrong with them is found where it is, and they need not
-// fit into memory.
+// fit into memory. What a recording may be called.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -51,6 +51,19 @@ TEST(ImportLong, FaultsAreShownWithTheirLines) {
   EXPECT_NE(said.err.find("400.0000,Mug,left"), std::string::npos) << said.err;
   EXPECT_EQ(ImportCsv(folder, csv, kCupMap, {"--check"}).out.substr(0, 41),
             "a_cup_is_carried: 30001 frames, 500.000 s");
+}
+
+TEST(ImportLong, ARecordingHasTheNameOfOne) {
+  const auto folder = FreshFolder("name_of_one");
+  for (const char* name : {"x.npz", "x.csv", "x.json", "x"}) {
+    const Said said = ImportCsv(folder, LongCsv(360), kCupMap, {"-o", (folder / name).string()});
+    EXPECT_EQ(said.exit_code, 2) << name;
+    EXPECT_NE(said.err.find(": of poses it is NAME.jsonl, NAME.episodes or -; of that, 'episode "
+                            "export' writes other files"),
+              std::string::npos)
+        << said.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
+  }
 }
 
 }  // namespace

@@ -282,19 +282,6 @@ TEST(Import, EveryFaultIsFoundAndNamedAndNothingIsWritten) {
   }
 }
 
-TEST(Import, ARecordingHasTheNameOfOne) {
-  const auto folder = FreshFolder("import");
-  for (const char* name : {"x.npz", "x.csv", "x.json", "x"}) {
-    const Said said = ImportCsv(folder, Csv(), kCupMap, {"-o", (folder / name).string()});
-    EXPECT_EQ(said.exit_code, 2) << name;
-    EXPECT_NE(said.err.find(": of poses it is NAME.jsonl, NAME.episodes or -; of that, 'episode "
-                            "export' writes other files"),
-              std::string::npos)
-        << said.err;
-    EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
-  }
-}
-
 // Nothing turns in it, so one sign alone tells the order of quaternions.
 TEST(Import, OneSignAloneIsAWarningWithBothReadings) {
   const auto folder = FreshFolder("import");

@@ -564,25 +564,16 @@ grammar::Tick EpisodeStream::end_tick() const {
 
 Result<Recording> ReadRecording(const std::string& path) {
   EpisodeReader reader(path);
+  const auto refuse = [&](std::string why) {
+    return tl::unexpected(grammar::Diagnostics{{.file = path, .message = std::move(why)}});
+  };
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    reader.diagnostics.push_back({.file = path,
-                                  .message = std::filesystem::exists(path, error)
-                                                 ? "is not a regular file"
-                                                 : "no such file"});
-    return tl::unexpected(std::move(reader.diagnostics));
-  }
-  if (const auto size = std::filesystem::file_size(path, error); error || size > kMaxEpisodeBytes) {
-    reader.diagnostics.push_back(
-        {.file = path, .message = fmt::format("is larger than {} MiB", kMaxEpisodeBytes >> 20)});
-    return tl::unexpected(std::move(reader.diagnostics));
-  }
+  if (!std::filesystem::is_regular_file(path, error))
+    return refuse(std::filesystem::exists(path, error) ? "is not a regular file" : "no such file");
+  if (const auto size = std::filesystem::file_size(path, error); error || size > kMaxEpisodeBytes)
+    return refuse(fmt::format("is larger than {} MiB", kMaxEpisodeBytes >> 20));
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) {
-    reader.diagnostics.push_back(
-        {.file = path, .message = std::string("cannot be read: ") + std::strerror(errno)});
-    return tl::unexpected(std::move(reader.diagnostics));
-  }
+  if (!stream) return refuse(std::string("cannot be read: ") + std::strerror(errno));
   for (std::string line; reader.diagnostics.empty() && std::getline(stream, line);) {
     if (line.ends_with('\r')) line.pop_back();  // written on Windows
     if (line.size() > kMaxEpisodeLineBytes) {
