@@ -228,6 +228,7 @@ TEST_F(Found, WhatIsNotThereIsNeverNothing) {
             "");
   EXPECT_EQ(Has(refused(line(R"({"recogniser": 2})")),
                 "milk.jsonl:1:1: error: found version 2 of the protocol, wanted 1\n"
+                "  {\"recogniser\": 2}\n  ^\n"
                 "  hint: {\"recogniser\": 1, ..}\n"),
             "");
   // Nothing found, said by a first line alone.
