@@ -133,6 +133,16 @@ double LostSeconds(const exchange::Imported& imported) {
   return lost_s;
 }
 
+std::vector<std::string> RowOf(const Batch& batch, const exchange::Imported& imported) {
+  const auto& success = imported.episode.header.attributes.success;
+  return {imported.episode.header.episode, std::to_string(imported.frames),
+          fmt::format("{:.2f}", imported.duration_s),
+          batch.file.empty() ? fmt::format("{:.2f}", LostSeconds(imported))
+          : !success         ? "-"
+          : *success         ? "yes"
+                             : "no"};
+}
+
 /// Each becomes an episode. One that is damaged is left out, and named.
 ExitCode ImportBatch(const Batch& batch, const ParsedOptions& options,
                      const CommandContext& context) {
@@ -182,13 +192,7 @@ ExitCode ImportBatch(const Batch& batch, const ParsedOptions& options,
                          batch.SourceOf(name), grammar, context, warnings);
       if (written != ExitCode::kAgrees) return written;
     }
-    const auto& success = episode.header.attributes.success;
-    table.push_back({episode.header.episode, std::to_string(imported->frames),
-                     fmt::format("{:.2f}", imported->duration_s),
-                     batch.file.empty() ? fmt::format("{:.2f}", LostSeconds(*imported))
-                     : !success         ? "-"
-                     : *success         ? "yes"
-                                        : "no"});
+    table.push_back(RowOf(batch, *imported));
   }
   if (table.size() == 1 && batch.file.empty()) exit_code = ExitCode::kBadInput;
   if (exit_code == ExitCode::kAgrees && !left_out.empty()) exit_code = ExitCode::kDiffers;

@@ -201,7 +201,9 @@ grammar::Diagnostics LivePoses::Emit(episode::EpisodeStream& stream) {
              .message = fmt::format("times must increase: {:.6g} s comes after {:.6g} s", frame_s,
                                     *last_s_)}};
   grammar::Diagnostics wrong = stream.Take(frame);
-  for (grammar::Diagnostic& one : wrong) one.place = {line_, 1};
+  const bool waited = waits_line_ > 0, is_faulty = !wrong.empty() && !waited;
+  for (grammar::Diagnostic& one : wrong) one.place = {waited ? waits_line_ : line_, 1};
+  waits_line_ = stream.frame() || is_faulty ? 0 : line_;
   if (stream.frame()) last_s_ = frame_s;
   has_frame_ = has_frame_ || stream.frame() != nullptr;
   return wrong;
@@ -209,7 +211,12 @@ grammar::Diagnostics LivePoses::Emit(episode::EpisodeStream& stream) {
 
 grammar::Diagnostics LivePoses::Finish(episode::EpisodeStream& stream) {
   has_frame_ = false;
-  return frame_s_ ? Emit(stream) : grammar::Diagnostics{};
+  grammar::Diagnostics wrong = frame_s_ ? Emit(stream) : grammar::Diagnostics{};
+  for (grammar::Diagnostic& one : stream.LeftOut()) {
+    one.place = {waits_line_, 1};
+    wrong.push_back(std::move(one));
+  }
+  return wrong;
 }
 
 }  // namespace prehend::exchange

@@ -40,6 +40,7 @@ class LivePoses {
   const std::string name_, map_path_;
   std::string head_;  ///< the lines before the first row, and that one
   int line_ = 0;
+  int waits_line_ = 0;  ///< of a frame that is left out unless the next one agrees with it
   std::optional<MapFile> map_;
   std::optional<PoseLines> lines_;
   bool collects_ = false;                        ///< a frame is of several lines

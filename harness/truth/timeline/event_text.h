@@ -49,7 +49,7 @@ HandRoles HandRolesOf(const std::vector<grammar::EventSignature>& events);
 
 /// The hand that an event is of, or "". Of events that are not in `roles`: their role "hand".
 const std::string& HandOf(const grammar::NamedEvent& event, const HandRoles& roles);
-/// "grasping of left_hand", or without a hand "contact".
+/// "EVENT of HAND", or without a hand "EVENT".
 std::string NameByHand(const grammar::NamedEvent& event, const HandRoles& roles);
 
 /// Rows of cells as lines with aligned columns, two blanks apart, no trailing blanks.
