@@ -166,7 +166,14 @@ std::string WhyNotEpisodes(const std::string& path) {
   const std::uintmax_t size = fs::file_size(path, error);
   if (!fs::exists(path + "-journal") && size < wanted)
     return fmt::format("is cut off: it has {} of {} bytes", size, wanted);
-  return "";
+  // SQLite undoes what a journal says, and removes the file that one ends with: ours names none.
+  const std::string journal = fs::weakly_canonical(path, error).string() + "-journal";
+  const fs::file_type type = fs::symlink_status(journal, error).type();
+  std::string end(8, '\0');
+  if (type == fs::file_type::regular)
+    std::ifstream(journal, std::ios::binary).seekg(-8, std::ios::end).read(end.data(), 8);
+  const bool is_ours = type == fs::file_type::regular && end != "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";
+  return is_ours || type == fs::file_type::not_found ? "" : "has a -journal of another program";
 }
 
 /// Whether its tables are those that this program makes, word by word.

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -283,6 +284,55 @@ TEST(EpisodeFileOfMany, NothingOfAFileRunsWhenSomethingIsAdded) {
     EXPECT_EQ(Slurped(bad), before) << addition;
     EXPECT_EQ(MessageOf(EpisodeFile::Open(bad.string())), "") << "it is still read";
   }
+}
+
+/// SQLite undoes a journal that it finds beside a file, and removes the file that the journal ends
+/// with.
+TEST(EpisodeFileOfMany, AJournalOfAnotherRemovesNothing) {
+  const fs::path folder = Fresh("journal"), file = folder / "a.episodes",
+                 letter = folder / "letter";
+  EXPECT_EQ(Record(file.string()).problem, "");
+  Spill(letter, "of the user");
+  fs::create_symlink(file, folder / "link.episodes");
+  const std::string magic = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", name = letter.string();
+  const auto word = [](std::uint64_t value) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xff);
+    return bytes;
+  };
+  const std::string bytes = Slurped(file);
+  const std::uint64_t page =
+      static_cast<std::uint8_t>(bytes[16]) << 8 | static_cast<std::uint8_t>(bytes[17]);
+  std::string journal =
+      magic + word(0) + word(0) + word(bytes.size() / page) + word(512) + word(page);
+  journal.resize(512, '\0');
+  std::uint64_t sum = 0;
+  for (const char one : name) sum += static_cast<std::uint64_t>(static_cast<signed char>(one));
+  journal += word((1 << 30) / page + 1) + name + word(name.size()) + word(sum) + magic;
+  const fs::path beside = file.string() + "-journal";
+  const auto refused = [](const fs::path& path, Database (*open)(const std::string&)) {
+    try {
+      open(path.string());
+    } catch (const DatabaseError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string why = "has a -journal of another program";
+  Spill(folder / "link.episodes-journal", "");
+  for (const fs::path& door : {file, folder / "link.episodes"}) {
+    Spill(beside, journal);
+    EXPECT_EQ(refused(door, OpenToRead), why) << door;
+    EXPECT_EQ(refused(door, OpenToWrite), why) << door;
+    EXPECT_EQ(Slurped(letter), "of the user") << door;
+    EXPECT_EQ(Slurped(beside), journal) << door;
+  }
+  fs::remove(beside);
+  ASSERT_EQ(mkfifo(beside.c_str(), 0600), 0);
+  EXPECT_EQ(refused(file, OpenToRead), why) << "it hung";
+  fs::remove(beside);
+  EXPECT_EQ(refused(file, OpenToRead), "");
+  EXPECT_EQ(Slurped(file), bytes);
 }
 
 TEST(EpisodeFileOfMany, EveryDamagedByteIsReportedOrHarmless) {
