@@ -65,7 +65,9 @@ test('labels, events and differences are rows, with the figures of score; the wo
 
 test('three faults in labels are found, and what is accepted is read by score', async () => {
   const {page, close} = await opened();
-  const choices = await page.locator('section.chosen ol.choices li').allTextContents();
+  const listed = page.locator('section.chosen ol.choices li');
+  await listed.nth(2).waitFor();  // they are listed when the page has seen that the section is in view
+  const choices = await listed.allTextContents();
   assert.equal(choices.length, 3, choices.join('\n'));
   assert.match(choices[0], /^grasping\(right_hand, milk\)1: 2\.60.3\.80 s2: 1\.48.4\.15 s/);
   assert.match(choices[1], /^putting_down\(right_hand, milk\)1: nothing2: 3\.31/);
