@@ -200,6 +200,7 @@ class Engine final {
   FrameNumber StaysUntil(RuleInstance& instance);
   FrameNumber CountStaysUntil(const RuleInstance& instance) const;
   void CatchUp(RuleInstance& instance, FrameNumber end);
+  bool IsMoment(NodeId node) const;
   bool AsksOnlyOthers(NodeId node) const;
   bool AsksForTheNearest(const Rule& rule) const;
   bool IsUnknownUntilTheEnd(NodeId node) const;

@@ -28,6 +28,13 @@ void Engine::ForEachFollowed(const RuleInstance& instance, const Visit& visit) c
   }
 }
 
+// Where an interval of another one begins or ends.
+bool Engine::IsMoment(NodeId index) const {
+  const Node& node = program_->nodes[index];
+  return (node.op == Op::kBegins || node.op == Op::kEnds) &&
+         program_->nodes[node.args[0]].op == Op::kHolds;
+}
+
 bool Engine::AsksOnlyOthers(NodeId index) const {
   if (index == kNone) return true;
   const Node& node = program_->nodes[index];
@@ -88,11 +95,13 @@ Engine::Follows Engine::WhenItFollows(const Rule& rule) const {
             .open_looks = !AsksOnlyOthers(goes_on),
             .only_others = only_others};
   }
-  if (const auto* from_to = rule.If<FromToRule>(); from_to != nullptr && from_to->within_s < 0) {
+  // Of one that has a deadline only if a moment alone begins it: how far that is known says all.
+  if (const auto* from_to = rule.If<FromToRule>();
+      from_to != nullptr && (from_to->within_s < 0 || IsMoment(from_to->from))) {
     const bool follows = !AsksForTheNearest(rule);
     const bool closed_looks = !AsksOnlyOthers(from_to->from);
     return {.closed = follows && (!closed_looks || rule.anchors.empty() || rule.anchors_at_hand),
-            .open = follows && rule.lasting_most_s < 0,
+            .open = follows && rule.lasting_most_s < 0 && from_to->within_s < 0,
             .closed_looks = closed_looks,
             .open_looks = !AsksOnlyOthers(from_to->to) || !AsksOnlyOthers(from_to->during),
             .only_others = only_others};
@@ -119,8 +128,7 @@ NodeId Engine::SkipsBy(const Rule& rule) const {
   if (!program_->waits || !rule.anchors.empty()) return {};
   if (const auto* looks_back = rule.If<UntilSinceRule>()) {
     const Node& until = program_->nodes[looks_back->until];
-    const bool is_simple = (until.op == Op::kBegins || until.op == Op::kEnds) &&
-                           program_->nodes[until.args[0]].op == Op::kHolds &&
+    const bool is_simple = IsMoment(looks_back->until) &&
                            program_->nodes[looks_back->since].op == Op::kOr &&
                            IsUnknownUntilTheEnd(looks_back->since);
     return is_simple ? until.args[0] : NodeId();

@@ -356,10 +356,9 @@ bool Engine::StepUntil(RuleInstance& instance, FrameNumber frame) {
 // It ends where something begins or ends that follows others: as long as that does, there is no
 // end.
 bool Engine::EndIsQuiet(RuleInstance& instance, FrameNumber frame) {
-  const Node& until = program_->nodes[RuleOf(instance).As<UntilSinceRule>().until];
-  if (log_ != nullptr || (until.op != Op::kBegins && until.op != Op::kEnds)) return false;
-  const Node& of = program_->nodes[until.args[0]];
-  if (of.op != Op::kHolds) return false;
+  const NodeId until = RuleOf(instance).As<UntilSinceRule>().until;
+  if (log_ != nullptr || !IsMoment(until)) return false;
+  const Node& of = program_->nodes[program_->nodes[until].args[0]];
   const InstanceId index = instance.references[static_cast<std::size_t>(of.slot)];
   return index != kNone && instances_[index].follows && frame >= instances_[index].known;
 }
