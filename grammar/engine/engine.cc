@@ -92,14 +92,18 @@ void Engine::Wake(InstanceId index) {
   ++awake_count_;
 }
 
-void Engine::WakeWatchers(int entity, const std::vector<Watch>& watchers) {
+// Who rests until entities have got somewhere is asked when one of them gets on, not as it
+// trembles.
+void Engine::WakeWatchers(int entity, const std::vector<Watch>& watchers, bool gets_on) {
   for (const Watch& watch : watchers) {
     const double rests_until_m = instances_.RestsUntil_m(watch.instance);
-    if (rests_until_m > 0 && watch.other != kNone &&
-        history_.Way_m(entity) + history_.Way_m(watch.other) < rests_until_m)
+    if (rests_until_m > 0 &&
+        (!gets_on || (watch.other != kNone &&
+                      history_.Way_m(entity) + history_.Way_m(watch.other) < rests_until_m)))
       continue;  // most of them
     const RuleInstance& instance = instances_[watch.instance];
     if (instance.awake || (rests_until_m > 0 && Ways_m(instance) < rests_until_m)) continue;
+    if (rests_until_m > 0) instances_.RestNoMore(watch.instance);
     if (log_ == nullptr && instances_.NeedsOneThatRests(instance)) continue;
     if (MayWake(instance)) Wake(watch.instance);
   }

@@ -93,7 +93,7 @@ class Engine final {
 
   // Waking and resting.
   void Wake(InstanceId instance);
-  void WakeWatchers(int entity, const std::vector<Watch>& watchers);
+  void WakeWatchers(int entity, const std::vector<Watch>& watchers, bool gets_on);
   bool MayWake(const RuleInstance& instance) const;
   NodeId NearnessOf(const Rule& rule) const;
   double Ways_m(const RuleInstance& instance) const;

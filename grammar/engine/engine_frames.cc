@@ -187,8 +187,8 @@ void Engine::NoteUndecidedEnds() {
 }
 
 void Engine::Look(int entity, const EntitySample& look) {
-  history_.SetSample(entity, look, FirstLook(entity));
-  WakeWatchers(entity, instances_.PoseWatchers(entity));
+  const bool gets_on = history_.SetSample(entity, look, FirstLook(entity));
+  WakeWatchers(entity, instances_.PoseWatchers(entity), gets_on);
 }
 
 void Engine::Look(const HandSample& hand) {
@@ -206,7 +206,7 @@ void Engine::Look(const HandSample& hand) {
     if (same_grip || instance.awake || (RuleOf(instance).watches_grips & changed) == 0) continue;
     if (MayWake(instance) && !SaysTheSame(instance)) Wake(watch.instance);
   }
-  WakeWatchers(hand.entity, instances_.PoseWatchers(hand.entity));
+  WakeWatchers(hand.entity, instances_.PoseWatchers(hand.entity), true);
 }
 
 void Engine::ApplyContacts(std::span<const Touch> touches) {

@@ -32,10 +32,11 @@ void History::BeginFrame(Tick tick) {
   ++count_;
 }
 
-void History::SetSample(int entity, const EntitySample& look, FrameNumber first) {
+bool History::SetSample(int entity, const EntitySample& look, FrameNumber first) {
   RingBuffer<PoseAtFrame>& samples = looks_[entity].samples;
   ForgetSamples(samples, first);
   if (samples.empty() && now() > 0) samples.PushBack() = {};  // what it was before anybody said
+  const double before_m = ways_m_.empty() ? -1 : ways_m_[entity].way_m;
   if (!ways_m_.empty() && samples.empty()) {
     ways_m_[entity].way_m += kFar_m;
     ways_m_[entity].place = look;
@@ -47,6 +48,7 @@ void History::SetSample(int entity, const EntitySample& look, FrameNumber first)
   sample.look = look;
   if (!IsTracked(look)) looks_[entity].was_lost = true;
   looks_[entity].GiveBack();
+  return ways_m_.empty() || ways_m_[entity].way_m != before_m;
 }
 
 void History::Move(int entity, const EntitySample& to) {

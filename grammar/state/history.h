@@ -98,8 +98,8 @@ class History {
 
   /// A new frame in which everything looks as before, until it is said otherwise.
   void BeginFrame(Tick tick);
-  /// Forgets what only frames before `first` need.
-  void SetSample(int entity, const EntitySample& look, FrameNumber first);
+  /// Forgets what only frames before `first` need. Whether its way grew, or nobody asks for that.
+  bool SetSample(int entity, const EntitySample& look, FrameNumber first);
   void SetHand(const HandSample& look, std::uint64_t crossed_thresholds, FrameNumber first);
 
   /// Forgets ticks of frames before `ticks`. Looks that only frames before `looks` need may be
