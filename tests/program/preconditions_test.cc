@@ -147,6 +147,27 @@ TEST_F(Preconditions, FewDescriptorsAreNoReasonToWait) {
   }
 }
 
+TEST_F(Preconditions, WhatTheMachineLacksIsNoBadInput) {
+  Accept();
+  const std::string file = (root_ / "a.episodes").string(), kb = (root_ / "kb").string();
+  ASSERT_EQ(Do("run carton_rests --record " + file).exit_code, 0);
+  ASSERT_EQ(Do("episode knowledge " + file + " -o " + kb).exit_code, 0);
+  const std::string closed = "exec 3>&- 4>&- 5>&- 6>&- 7>&- 8>&- 9>&-; ulimit -n ";
+  for (const char* count : {"4", "5", "6", "7", "8"}) {
+    for (const std::string& command :
+         {"episode verify " + file, "report " + file + " -o " + (root_ / "page.html").string(),
+          "episode ask " + kb + " true", "episode resegment " + file}) {
+      const Said said = DoAfter(closed + count, command);
+      EXPECT_TRUE(said.exit_code == 0 || said.exit_code == 3) << count << command << said.err;
+      const bool says = said.err.find("Too many open files") != std::string::npos;
+      EXPECT_TRUE(said.exit_code == 0 || says) << count << command << said.err;
+    }
+  }
+  const Said said = DoAfter("export TMPDIR=/nonexistent", "episode verify " + file);
+  EXPECT_EQ(said.exit_code, 3) << said.err;
+  EXPECT_NE(said.err.find("no folder for temporary files"), std::string::npos) << said.err;
+}
+
 // Nobody writes into the pipe: who opens it waits for ever.
 TEST_F(Preconditions, APipeIsNotWaitedFor) {
   Accept();

@@ -3,6 +3,8 @@
 // tests/program/command_line_test.cc
 #pragma once
 
+#include <string_view>
+
 namespace prehend {
 
 enum class ExitCode {
@@ -13,5 +15,9 @@ enum class ExitCode {
   kNothing = 4,   ///< nothing was selected or found
   kPending = 5,   ///< goldens wait for acceptance
 };
+
+/// Of a problem told by `text`: what the machine lacks now (room, descriptors, memory) is no bad
+/// input.
+ExitCode CodeOf(std::string_view text);
 
 }  // namespace prehend

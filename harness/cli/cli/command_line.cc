@@ -73,9 +73,7 @@ std::optional<Refusal> RefuseUnreadableFolders(const std::string& root) {
     fs::recursive_directory_iterator entry(folder, error);
     while (!error && entry != fs::recursive_directory_iterator()) entry.increment(error);
     if (!error) continue;
-    const bool of_system = error == std::errc::too_many_files_open ||
-                           error == std::errc::too_many_files_open_in_system;
-    return Refusal{of_system ? ExitCode::kFailure : ExitCode::kBadInput,
+    return Refusal{CodeOf(error.message()),
                    fmt::format("{} or a folder in it cannot be read: {}",
                                ReadableName(folder.string()), error.message())};
   }

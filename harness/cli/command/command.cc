@@ -43,20 +43,6 @@ WorkerLimits LimitsOf(const ParsedOptions& options, const std::vector<std::strin
           .memory_limit_bytes = memory_limit_mb * kMegabyte};
 }
 
-/// What the machine lacks now is no bad input.
-ExitCode CodeOf(const std::string& problem) {
-  constexpr const char* kOfMachine[] = {"the disk is full",
-                                        "is the disk full?",
-                                        "another process is writing",
-                                        "the file would become larger than it may",
-                                        "No space left on device",
-                                        "Disk quota exceeded",
-                                        "disk I/O error"};
-  const bool is_of_machine = std::ranges::any_of(
-      kOfMachine, [&](const char* why) { return problem.find(why) != std::string::npos; });
-  return is_of_machine ? ExitCode::kFailure : ExitCode::kBadInput;
-}
-
 }  // namespace
 
 Command Limited(Command command, double time_limit_s) {
@@ -131,6 +117,7 @@ ExitCode Complain(const CommandContext& context, const episode::NotFound& none) 
 }
 
 ExitCode Complain(const CommandContext& context, ExitCode code, const std::string& message) {
+  if (code == ExitCode::kBadInput) code = CodeOf(message);
   // What cannot have succeeded is not worth repeating; what failed may be looked into.
   return ComplainWithCorrection(
       context, code, message,
@@ -171,7 +158,7 @@ ExitCode WarnOfScenariosNotRun(const CommandContext& context) {
 }
 
 ExitCode Refuse(const CommandContext& context, const std::string& message) {
-  return Complain(context, CodeOf(message), message);
+  return Complain(context, ExitCode::kBadInput, message);
 }
 
 void Warn(const CommandContext& context, const grammar::Diagnostics& warnings) {

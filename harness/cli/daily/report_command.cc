@@ -222,15 +222,17 @@ std::vector<suite::ScenarioVerdict> VerdictsOf(const std::vector<episode::Episod
   return verdicts;
 }
 
-/// What cannot be read is not on the page.
+/// What cannot be read is not on the page; of what could not be judged it says no more than that.
 ExitCode ComplainOfUnread(const std::vector<suite::ScenarioVerdict>& verdicts,
                           const CommandContext& context) {
-  const auto unread =
-      std::ranges::find(verdicts, ExitCode::kBadInput, &suite::ScenarioVerdict::exit_code);
+  const auto unread = std::ranges::find_if(verdicts, [](const suite::ScenarioVerdict& verdict) {
+    return verdict.exit_code == ExitCode::kBadInput || verdict.reason == "cannot be read" ||
+           verdict.reason.starts_with("its process ended");
+  });
   if (unread == verdicts.end()) return ExitCode::kAgrees;
   context.err << fmt::format("prehend: {}: {}\n{}", unread->scenario, unread->reason,
                              suite::DetailsText(*unread));
-  return ExitCode::kBadInput;
+  return unread->exit_code;
 }
 
 /// Labels, grammars and others beside each other.
@@ -285,7 +287,7 @@ ExitCode ReportSides(std::vector<episode::Take> takes, const std::string& page,
                                verdicts.size() == 1 ? "" : "s", tally.passed,
                                has_labels ? "labelled" : first + " says", tally.failed);
   }
-  return scores->failures.empty() ? ComplainOfUnread(verdicts, context) : ExitCode::kBadInput;
+  return scores->failures.empty() ? ComplainOfUnread(verdicts, context) : CodeOf(scores->failures);
 }
 
 ExitCode RunReport(const ParsedOptions& options, const CommandContext& context) {

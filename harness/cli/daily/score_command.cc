@@ -21,7 +21,7 @@ ExitCode PrintScores(const Result<measure::LabelScores>& scores, double collar_s
   context.err << warnings;
   if (!scores) return Complain(context, scores.error());
   context.err << scores->failures;
-  const ExitCode code = scores->failures.empty() ? ExitCode::kAgrees : ExitCode::kBadInput;
+  const ExitCode code = scores->failures.empty() ? ExitCode::kAgrees : CodeOf(scores->failures);
   if (options.Has("--json")) {
     nlohmann::ordered_json json =
         measure::ScoresJson(scores->of_grammars, collar_s, options.Has("--verbose"));

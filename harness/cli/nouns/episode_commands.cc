@@ -82,7 +82,7 @@ ExitCode RunVerify(const ParsedOptions& options, const CommandContext& context) 
                                             result.episode.file, result.episode.scenario);
     if (!result.problem.empty()) {
       context.err << result.problem;
-      worst = ExitCode::kBadInput;
+      worst = std::max(worst, CodeOf(result.problem));
     } else if (!result.differences.empty()) {
       context.err << heading << result.differences;
       if (worst == ExitCode::kAgrees) worst = ExitCode::kDiffers;
@@ -234,7 +234,7 @@ ExitCode ResegmentEpisodes(const std::vector<episode::EpisodeName>& selected,
     warned = result.warnings;
     if (!result.problem.empty()) {
       context.err << result.problem;
-      worst = ExitCode::kBadInput;
+      worst = std::max(worst, CodeOf(result.problem));
     } else if (result.run.status.kind != physics::RunStatus::Kind::kCompleted &&
                worst == ExitCode::kAgrees) {
       context.err << fmt::format("prehend: {} has no good end: {}\n", PlaceOf(result.episode),

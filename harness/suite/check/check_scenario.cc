@@ -322,7 +322,9 @@ void Shorten(std::string& text, const std::string& root) {
 
 ScenarioVerdict Unreadable(const CheckRequest& request, ScenarioVerdict verdict,
                            const grammar::Diagnostics& why) {
-  Conclude({{ExitCode::kBadInput, "cannot be read", "", why}}, verdict);
+  Conclude({{why.empty() ? ExitCode::kBadInput : CodeOf(why.front().message), "cannot be read", "",
+             why}},
+           verdict);
   AttributeUnread(request, verdict);
   if (request.IsPlayed()) verdict.command = CommandAbout("validate", request.id, request.changes);
   return verdict;
