@@ -22,33 +22,52 @@ constexpr std::size_t kMostWordsOfPart = std::size_t{1} << 24,
 Word Folded(Word difference) { return (difference << 1) ^ (Word{0} - (difference >> 63)); }
 Word Unfolded(Word folded) { return (folded >> 1) ^ (Word{0} - (folded & 1)); }
 
-/// Each word, from the second on, becomes its difference to the one before; and back.
+/// Each word, from the second on, becomes its difference to the one before; and so often back.
 void Differ(std::span<Word> words) {
   for (std::size_t i = words.size(); i-- > 1;) words[i] -= words[i - 1];
 }
+template <std::size_t kTimes>
 void Sum(std::span<Word> words) {
-  for (std::size_t i = 1; i < words.size(); ++i) words[i] += words[i - 1];
+  std::array<Word, kTimes> sums{};
+  for (Word& word : words) {
+    Word last = word;
+    for (Word& sum : sums) last = sum += last;
+    word = last;
+  }
 }
+
+using Bytes [[gnu::vector_size(16)]] = std::uint8_t;
+using Pairs [[gnu::vector_size(16)]] = std::uint16_t;
+using Fours [[gnu::vector_size(16)]] = std::uint32_t;
+using Words [[gnu::vector_size(16)]] = Word;
 
 /// The bytes of eight words, as a matrix with a word per row, change rows and columns.
 void TransposeBytes(std::array<Word, 8>& m) {
-  constexpr Word kMasks[] = {0x00000000ffffffff, 0x0000ffff0000ffff, 0x00ff00ff00ff00ff};
-  for (std::size_t step = 0; step < 3; ++step) {
-    const std::size_t apart = 4 >> step, bits = 8 * apart;
-    for (std::size_t i = 0; i < 8; ++i) {
-      if (i & apart) continue;
-      const Word change = ((m[i] >> bits) ^ m[i + apart]) & kMasks[step];
-      m[i] ^= change << bits;
-      m[i + apart] ^= change;
-    }
+  Pairs pairs[4];
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto a = reinterpret_cast<Bytes>(Words{m[2 * i], 0}),
+               b = reinterpret_cast<Bytes>(Words{m[2 * i + 1], 0});
+    pairs[i] = reinterpret_cast<Pairs>(
+        __builtin_shufflevector(a, b, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23));
   }
+  Fours low[2], high[2];
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Pairs a = pairs[2 * i], b = pairs[2 * i + 1];
+    low[i] = reinterpret_cast<Fours>(__builtin_shufflevector(a, b, 0, 8, 1, 9, 2, 10, 3, 11));
+    high[i] = reinterpret_cast<Fours>(__builtin_shufflevector(a, b, 4, 12, 5, 13, 6, 14, 7, 15));
+  }
+  const Fours turned[] = {__builtin_shufflevector(low[0], low[1], 0, 4, 1, 5),
+                          __builtin_shufflevector(low[0], low[1], 2, 6, 3, 7),
+                          __builtin_shufflevector(high[0], high[1], 0, 4, 1, 5),
+                          __builtin_shufflevector(high[0], high[1], 2, 6, 3, 7)};
+  std::memcpy(m.data(), turned, sizeof turned);
 }
 
 /// Calls `move` for eight words, or the last fewer ones, at a time.
 template <typename Move>
 void InEights(std::size_t count, const Move& move) {
   std::size_t i = 0;
-  for (; i + 8 <= count; i += 8) move(i, std::size_t{8});
+  for (; i + 8 <= count; i += 8) move(i, std::integral_constant<std::size_t, 8>());
   if (i < count) move(i, count - i);
 }
 
@@ -87,7 +106,7 @@ void AppendColumn(std::span<const Word> column, std::string& bytes) {
   for (std::size_t row = 0; row < order; ++row) AppendWord(best[row], bytes);
   const std::size_t count = best.size() - order, begin = bytes.size();
   bytes.resize(begin + planes * count);
-  InEights(count, [&](std::size_t i, std::size_t few) {
+  InEights(count, [&](std::size_t i, auto few) {
     std::array<Word, 8> eight{};
     std::memcpy(eight.data(), &best[order + i], few * sizeof(Word));
     TransposeBytes(eight);
@@ -106,15 +125,20 @@ void TakeColumn(std::string_view& bytes, std::span<Word> column) {
   for (std::size_t row = 0; row < order; ++row) column[row] = TakeWord(bytes);
   const std::size_t count = column.size() - order;
   if (bytes.size() < planes * count) throw Damage("a part is too short");
-  InEights(count, [&](std::size_t i, std::size_t few) {
+  const std::span<Word> rest = column.subspan(order);  // zeros
+  const auto take = [&](std::size_t i, auto few) {
     std::array<Word, 8> eight{};
     for (std::size_t plane = 0; plane < planes; ++plane)
-      std::memcpy(&eight[plane], &bytes[plane * count + i], few);
+      std::memcpy(&eight[plane], bytes.data() + plane * count + i, few);
     TransposeBytes(eight);
-    for (std::size_t k = 0; k < few; ++k) column[order + i + k] = Unfolded(eight[k]);
-  });
+    for (Word& word : eight) word = Unfolded(word);
+    std::memcpy(&rest[i], eight.data(), few * sizeof(Word));
+  };
+  if (planes > 0) InEights(count, take);
   bytes.remove_prefix(planes * count);
-  for (std::size_t i = 0; i < order; ++i) Sum(column);
+  if (order == 1) Sum<1>(column);
+  if (order == 2) Sum<2>(column);
+  if (order == 3) Sum<3>(column);
 }
 
 /// Of one table after another; each has the hash of those before as its place.

@@ -239,6 +239,10 @@ std::vector<ContactPoints> PointsOfTable(const FrameLayout& layout, const Column
                                          std::size_t moments) {
   std::vector<ContactPoints> points(moments);
   if (table.width != kPointWidth) throw Damage("contact points have too few columns");
+  std::vector<std::size_t> counts(moments);
+  for (std::size_t row = 0; row < table.rows; ++row)
+    if (table.At(row, 0) < moments) ++counts[table.At(row, 0)];
+  for (std::size_t moment = 0; moment < moments; ++moment) points[moment].reserve(counts[moment]);
   for (std::size_t row = 0; row < table.rows; ++row) {
     CellReader cells(table, row);
     std::size_t moment = 0;
