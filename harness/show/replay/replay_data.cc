@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <stdexcept>
 
 #include "harness/base/base/quoting.h"
@@ -279,21 +280,41 @@ bool IsNear(const Pose& a, const Pose& b) {
   return IsNearPlace(a, b.p_m) && Apart(a.q, b.q) <= kTrackTan2;
 }
 
+/// How far a thing has come and turned up to each pose, no less than it has.
+struct Way {
+  explicit Way(std::span<const Pose> poses) : m(poses.size()), rad(poses.size()) {
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+      m[i] = m[i - 1] + (poses[i].p_m - poses[i - 1].p_m).norm();
+      rad[i] = rad[i - 1] + 2 * std::sqrt(std::max(0.0, Apart(poses[i].q, poses[i - 1].q)));
+    }
+  }
+  std::vector<double> m, rad;
+};
+
 /// Whether all poses strictly between two of them are near to what is interpolated. What does not
 /// fit shows in the middle first, or where the last span did not (`misfit`), and in places before
-/// rotations.
+/// rotations. Poses that cannot be too far off, because one beside them is so near, are not looked
+/// at.
 class Span {
  public:
-  Span(std::span<const Pose> poses, std::span<const std::int64_t> at, std::size_t first,
-       std::size_t last)
-      : poses_(poses), at_(at), first_(first), last_(last) {}
+  Span(std::span<const Pose> poses, std::span<const std::int64_t> at, const Way& way,
+       std::size_t first, std::size_t last)
+      : poses_(poses), at_(at), way_(way), first_(first), last_(last) {}
 
-  bool Fits(std::size_t& misfit) const {
+  bool Fits(std::size_t& misfit) {
     const std::size_t middle = first_ + (last_ - first_) / 2;
     if (middle > first_ && !IsNearAt(middle)) return false;
     if (misfit > first_ && misfit < last_ && !IsNearAt(misfit)) return false;
     for (std::size_t i = last_ - 1; i > first_; --i) {
-      if (IsNearAt(i)) continue;
+      if (IsNearAt(i)) {
+        const std::size_t near = i;
+        for (std::size_t step = 1; step > 0;) {
+          const bool is_near = i > first_ + step && IsNearBeside(near, i - step);
+          if (is_near) i -= step;
+          step = is_near ? 2 * step : step / 2;
+        }
+        continue;
+      }
       misfit = i;
       return false;
     }
@@ -301,21 +322,36 @@ class Span {
   }
 
  private:
-  bool IsNearAt(std::size_t i) const {
+  double ShareAt(std::size_t i) const {
+    return static_cast<double>(at_[i] - at_[first_]) /
+           static_cast<double>(at_[last_] - at_[first_]);
+  }
+
+  /// Sets by how much it is nearer than it must be, at least.
+  bool IsNearAt(std::size_t i) {
     const Pose &a = poses_[first_], &b = poses_[last_];
-    const double share =
-        static_cast<double>(at_[i] - at_[first_]) / static_cast<double>(at_[last_] - at_[first_]);
-    if (!IsNearPlace(poses_[i], a.p_m + share * (b.p_m - a.p_m))) return false;
+    const double share = ShareAt(i);
+    spare_m_ = kTrackTolerance_m - (poses_[i].p_m - (a.p_m + share * (b.p_m - a.p_m))).norm();
+    if (spare_m_ < 0) return false;
+    spare_rad_ = 0;
     if (turn_ < kSmall) {
       // A straight line between the quaternions is off by less than turn^3 / 30 (0.0003 rad), and
       // decides most poses.
       Eigen::Quaterniond straight;
       straight.coeffs() = (1 - share) * a.q.coeffs() + share * sign_ * b.q.coeffs();
       const double apart = Apart(poses_[i].q, straight);
+      spare_rad_ = kTrackTolerance_rad - 2 * std::sqrt(std::max(0.0, apart)) - 0.0006;
       if (apart < kTrackTan2 * 0.8) return true;
       if (apart > kTrackTan2 * 1.25) return false;
     }
     return IsNear(poses_[i], Between(a, b, share));
+  }
+
+  /// Of a pose before one that was looked at last.
+  bool IsNearBeside(std::size_t near, std::size_t i) const {
+    const double share = ShareAt(near) - ShareAt(i);
+    return way_.m[near] - way_.m[i] + share * way_m_ < spare_m_ &&
+           way_.rad[near] - way_.rad[i] + share * std::numbers::pi * turn_ < spare_rad_;
   }
 
   /// Of the half angle between the ends.
@@ -323,10 +359,13 @@ class Span {
 
   std::span<const Pose> poses_;
   std::span<const std::int64_t> at_;
+  const Way& way_;
   std::size_t first_, last_;
   double dot_ = poses_[first_].q.dot(poses_[last_].q);
   double sign_ = dot_ < 0 ? -1 : 1;
   double turn_ = std::sqrt(std::max(0.0, 2 - 2 * std::abs(dot_)));
+  double way_m_ = (poses_[last_].p_m - poses_[first_].p_m).norm();
+  double spare_m_ = 0, spare_rad_ = 0;
 };
 
 // The script is played once more, over the recorded motion: what waits for something happens when
@@ -412,7 +451,10 @@ std::vector<std::size_t> KeysOf(std::span<const Pose> poses, std::span<const std
   const auto differs = [&](const Pose& pose) { return !IsNear(pose, poses.front()); };
   if (std::ranges::none_of(poses, differs)) return keys;
   std::size_t misfit = 0;
-  const auto fits = [&](std::size_t to) { return Span(poses, at, keys.back(), to).Fits(misfit); };
+  const Way way(poses);
+  const auto fits = [&](std::size_t to) {
+    return Span(poses, at, way, keys.back(), to).Fits(misfit);
+  };
   while (keys.back() + 1 < poses.size()) {
     // As far as doubled steps lead, then between the last that fits and the first that does not.
     const std::size_t from = keys.back();
