@@ -55,16 +55,18 @@ class Carrier {
   /// must get somewhere: a squeezed object trembles faster than it slides. Where it gets is asked
   /// of the frames before and after, supported or not.
   bool Slides(int frame) const {
-    int before = frame, after = frame;
-    while (before > 0 && recording_.Seconds(before, frame) < settings_.slide_window_s / 2) --before;
-    while (after + 1 < recording_.size() &&
-           recording_.Seconds(frame, after) < settings_.slide_window_s / 2)
-      ++after;
     for (const auto& [support, spans] : supports_) {
-      if (!Covers(spans, frame)) continue;
-      if (On(support)[frame].along_m_per_s > settings_.slide_speed_m_per_s &&
-          WayAlong(support, before, after) >
-              settings_.slide_speed_m_per_s * recording_.Seconds(before, after))
+      if (!Covers(spans, frame) ||
+          On(support)[frame].along_m_per_s <= settings_.slide_speed_m_per_s)
+        continue;
+      int before = frame, after = frame;
+      while (before > 0 && recording_.Seconds(before, frame) < settings_.slide_window_s / 2)
+        --before;
+      while (after + 1 < recording_.size() &&
+             recording_.Seconds(frame, after) < settings_.slide_window_s / 2)
+        ++after;
+      if (WayAlong(support, before, after) >
+          settings_.slide_speed_m_per_s * recording_.Seconds(before, after))
         return true;
     }
     return false;

@@ -278,10 +278,6 @@ Spans Recording::Bridged(const Spans& spans, double gap_s) const {
   return joined;
 }
 
-double Recording::Seconds(int from_frame, int to_frame) const {
-  return static_cast<double>(ticks[to_frame] - ticks[from_frame]) / scene.world.rate_hz;
-}
-
 double Recording::Lasts_s(Span span) const {
   if (span.empty()) return 0;  // at the end of the recording there is no tick to ask for
   const grammar::Tick end = span.end < size() ? ticks[span.end] : ticks.back() + 1;

@@ -64,7 +64,9 @@ struct Recording {
 
   int size() const { return static_cast<int>(frames.size()); }
   int body_count() const { return static_cast<int>(scene.bodies.size()); }
-  double Seconds(int from_frame, int to_frame) const;
+  double Seconds(int from_frame, int to_frame) const {
+    return static_cast<double>(ticks[to_frame] - ticks[from_frame]) / scene.world.rate_hz;
+  }
   double Lasts_s(Span span) const;
   /// Joins spans whose gap lasts so long or less.
   Spans Bridged(const Spans& spans, double gap_s) const;
