@@ -325,9 +325,12 @@ class Measuring {
     Values values(static_cast<std::size_t>(past_.frames()));
     for (FrameNumber frame = 0; frame < past_.frames(); ++frame) {
       const Viewpoint at{.instance = instance, .frame = frame};
-      const double margin = past_.Is(true, node, at)    ? Margin(node, at).value_or(kInfinity)
-                            : past_.Is(false, node, at) ? Margin(node, at).value_or(-kInfinity)
-                                                        : (truth ? -kInfinity : kInfinity);
+      // What has a margin is known.
+      const std::optional<double> measured = Margin(node, at);
+      const double margin = measured && std::isfinite(*measured) ? *measured
+                            : past_.Is(true, node, at)           ? measured.value_or(kInfinity)
+                            : past_.Is(false, node, at)          ? measured.value_or(-kInfinity)
+                                                                 : (truth ? -kInfinity : kInfinity);
       values[static_cast<std::size_t>(frame)] = truth ? margin : -margin;
     }
     return values;
