@@ -14,8 +14,8 @@
 #include "grammar/base/timeline.h"
 #include "harness/base/base/result.h"
 #include "harness/episode/episodes/database.h"
-#include "harness/episode/episodes/task_files.h"
 #include "harness/episode/frames/chunk.h"
+#include "harness/episode/run/task_files.h"
 #include "physics/simulation.h"
 
 namespace prehend::episode {

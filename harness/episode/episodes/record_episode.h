@@ -16,12 +16,12 @@
 #include "grammar/base/timeline.h"
 #include "harness/base/base/atomic_file.h"
 #include "harness/episode/episodes/database.h"
-#include "harness/episode/episodes/task_files.h"
 #include "harness/episode/frames/chunk.h"
 #include "harness/episode/frames/frame_layout.h"
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_scenario.h"
 #include "harness/episode/run/run_trials.h"
+#include "harness/episode/run/task_files.h"
 #include "harness/episode/sense/episode_file.h"
 
 namespace prehend::episode {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/episode/episodes/task_files.h"
+#include "harness/episode/run/task_files.h"
 
 #include <filesystem>
 #include <fstream>
