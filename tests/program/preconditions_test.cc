@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <map>
 
 #include "tests/program/small_project.h"
 
@@ -12,6 +13,14 @@ namespace prehend::house {
 namespace {
 
 namespace fs = std::filesystem;
+
+std::map<std::string, std::string> FilesBelow(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file() && entry.path().string().find("/build/") == std::string::npos)
+      files[entry.path().string()] = ReadFile(entry.path());
+  return files;
+}
 
 class Preconditions : public SmallProject {
  protected:
@@ -80,6 +89,52 @@ TEST_F(Preconditions, AnOutputReplacesNoInput) {
   EXPECT_EQ(Do("check --no-pictures --junit " + (root_ / "junit.xml").string()).exit_code, 0);
   EXPECT_EQ(Do("check --no-pictures --junit " + (root_ / "junit.xml").string()).exit_code, 0)
       << "what was written before may be written again";
+}
+
+// Found in a folder, named in a file of takes, used by a grammar, met in an export.
+TEST_F(Preconditions, NorWhatIsReadWithoutBeingNamed) {
+  const std::string at = root_.string() + "/";
+  const auto copy = [&](const std::string& from, const std::string& to) {
+    fs::create_directories((root_ / to).parent_path());
+    fs::copy_file(from, root_ / to);
+  };
+  const std::string poses = PREHEND_SOURCE_DIR "/docs/motion_capture/";
+  for (const std::string take : {"milk.jsonl", "folder/take.jsonl", "other/milk.jsonl"})
+    ASSERT_EQ(Do("import " + poses + "poses.csv --map " + poses + "bodies.yaml -o " + at + take)
+                  .exit_code,
+              0);
+  copy(poses + "labels.csv", "labels.csv");
+  copy(poses + "labels.csv", "truth/take.csv");
+  copy(poses + "labels.yaml", "labels.yaml");
+  WriteFile(root_ / "base.grammar", "grammar base\nuse pick_and_place_from_motion\n");
+  WriteFile(root_ / "top.grammar", "grammar top\nuse base\n");
+  WriteFile(root_ / "takes.yaml",
+            "map: labels.yaml\ntakes: [{recording: milk.jsonl, labels: labels.csv}]\n");
+  const std::string takes = at + "takes.yaml", over = " --over reach_radius=10cm..20cm:2 -o ",
+                    folder = at + "folder", truth = " --truth " + at + "truth --map " + at;
+  for (const auto& [command, output] : std::vector<std::pair<std::string, std::string>>{
+           {"report " + folder + " -o ", "folder/take.jsonl"},
+           {"report " + folder + truth + "labels.yaml -o ", "truth/take.csv"},
+           {"report " + takes + " -o ", "milk.jsonl"},
+           {"report " + takes + " -o ", "labels.csv"},
+           {"report " + takes + " -o ", "labels.yaml"},
+           {"report " + at + "milk.jsonl --grammar " + at + "top.grammar -o ", "base.grammar"},
+           {"grammar sweep " + takes + over, "labels.csv"},
+           {"grammar sweep " + folder + truth + "labels.yaml" + over, "truth/take.csv"},
+           {"grammar margins " + takes + " --over reach_radius -o ", "labels.csv"},
+           {"episode resegment " + takes + " -o ", "labels.csv"},
+           {"episode export " + at + "milk.jsonl --to jsonl -o ", "."},
+           {"episode export " + at + "milk.jsonl " + at + "other/milk.jsonl --to jsonl -o ",
+            "other"}}) {
+    const std::map<std::string, std::string> before = FilesBelow(root_);
+    const Said said = Do(command + at + output);
+    EXPECT_EQ(said.exit_code, 2) << command << output << said.out;
+    EXPECT_NE(said.err.find("is what is read; name another file"), std::string::npos)
+        << command << output << said.err;
+    EXPECT_TRUE(FilesBelow(root_) == before) << command << output;
+  }
+  EXPECT_EQ(Do("report " + takes + " -o " + at + "page.html").exit_code, 0);
+  EXPECT_EQ(Do("report " + takes + " -o " + at + "page.html").exit_code, 0);
 }
 
 TEST_F(Preconditions, NorAnotherOutput) {

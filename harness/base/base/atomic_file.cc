@@ -2,6 +2,7 @@
 #include "harness/base/base/atomic_file.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <ftw.h>
 #include <signal.h>
 #include <sys/file.h>
@@ -17,6 +18,7 @@
 #include <system_error>
 
 #include "harness/base/base/content_hash.h"
+#include "harness/base/base/input_files.h"
 #include "harness/base/base/text_file.h"
 
 namespace prehend {
@@ -127,12 +129,13 @@ std::string MakeFolderOf(const fs::path& path) {
   return error ? "cannot create " + path.parent_path().string() + ": " + error.message() : "";
 }
 
-AtomicFile::AtomicFile(const fs::path& path) : path_(path) {
+AtomicFile::AtomicFile(const fs::path& path, Over over) : path_(path), over_(over) {
   if (path == "-") {
     stream_ = &std::cout;
     return;
   }
   problem_ = WhyNotReplaceable(path);
+  if (problem_.empty()) problem_ = WhyInput();
   if (problem_.empty()) problem_ = MakeFolderOf(path);
   if (!problem_.empty()) return;
   std::error_code error;
@@ -159,6 +162,11 @@ AtomicFile::~AtomicFile() {
   if (!unfinished_.empty()) fs::remove(unfinished_, error);
 }
 
+std::string AtomicFile::WhyInput() const {
+  if (over_ == Over::kAnything || !IsInput(path_)) return "";
+  return fmt::format("cannot write {}: {}; name another file", path_.string(), kIsRead);
+}
+
 void AtomicFile::ForgetNameless() {
   if (nameless_ >= 0) close(nameless_);
   nameless_ = -1;
@@ -170,6 +178,7 @@ std::string AtomicFile::Commit() {
   if (file_.is_open()) file_.close();
   if (!stream_->flush()) return cannot + "not all of it could be written; is the disk full?";
   if (unfinished_.empty()) return "";
+  if (std::string why = WhyInput(); !why.empty()) return why;
   if (nameless_ >= 0 && linkat(AT_FDCWD, NameOf(nameless_).c_str(), AT_FDCWD, unfinished_.c_str(),
                                AT_SYMLINK_FOLLOW) != 0)
     return cannot + std::strerror(errno);
@@ -191,8 +200,8 @@ FolderLock::~FolderLock() {
 
 std::string WhyNotWritable(const fs::path& path) { return AtomicFile(path).problem(); }
 
-std::string WriteTextFile(const fs::path& path, std::string_view text) {
-  AtomicFile file(path);
+std::string WriteTextFile(const fs::path& path, std::string_view text, Over over) {
+  AtomicFile file(path, over);
   file.stream() << text;
   return file.Commit();
 }

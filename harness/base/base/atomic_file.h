@@ -11,12 +11,18 @@
 
 namespace prehend {
 
+/// What may be replaced: an input (IsInput()) only where a file is brought up to date.
+enum class Over { kNoInput, kAnything };
+
+/// In what AtomicFile says of an output that is an input: the user's mistake, no failure.
+inline constexpr std::string_view kIsRead = "it is what is read";
+
 /// Replaces only regular files, and follows a link to one. It is not synchronised to the disk: it
 /// is safe from a crash of the program, not from a power cut.
 class AtomicFile {
  public:
   /// Creates the folders above it. "-" is standard output, which is written directly.
-  explicit AtomicFile(const std::filesystem::path& path);
+  explicit AtomicFile(const std::filesystem::path& path, Over over = Over::kNoInput);
   /// Without Commit() an older file is as it was.
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -32,8 +38,10 @@ class AtomicFile {
 
  private:
   void ForgetNameless();
+  std::string WhyInput() const;
 
-  std::filesystem::path path_;        ///< as the caller named it
+  std::filesystem::path path_;  ///< as the caller named it
+  Over over_;
   std::filesystem::path target_;      ///< what it is after links
   std::filesystem::path unfinished_;  ///< beside the target; empty for standard output
   int nameless_ = -1;  ///< the file while it has no name, which a killed process leaves nothing of
@@ -67,7 +75,8 @@ std::string WhyNotWritable(const std::filesystem::path& path);
 
 /// Writes a file, and creates the folders above it. Returns "", or what went wrong; then an older
 /// file is as it was.
-std::string WriteTextFile(const std::filesystem::path& path, std::string_view text);
+std::string WriteTextFile(const std::filesystem::path& path, std::string_view text,
+                          Over over = Over::kNoInput);
 
 // A folder of one's own among the temporary files, removed with all that is in it. Tested by
 // tests/harness/base/base/temporary_folder_test.cc

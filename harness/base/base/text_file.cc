@@ -10,6 +10,8 @@
 #include <fstream>
 #include <utility>
 
+#include "harness/base/base/input_files.h"
+
 namespace prehend {
 namespace {
 
@@ -238,7 +240,7 @@ Diagnostics ReadTextBlocks(const std::string& path, std::uintmax_t most_bytes,
   if (ReadableName(path) != path)
     return refuse("the name of this file holds what is no printable text; rename it");
   if (auto why = WhyNotReadable(path, most_bytes); !why.empty()) return refuse(std::move(why));
-  std::ifstream stream(path, std::ios::binary);
+  std::ifstream stream = OpenInput(path);
   if (!stream) return refuse(std::string("cannot be read: ") + std::strerror(errno));
   Diagnostics problems;
   std::string bytes;

@@ -30,8 +30,8 @@ using TakeBlock = std::function<void(std::string block, bool is_last)>;
 grammar::Diagnostics ReadTextBlocks(const std::string& path, std::uintmax_t most_bytes,
                                     const TakeBlock& take);
 
-/// To look into a file. What is no regular file has failed: a pipe would be waited for, a device
-/// may never end.
+/// To look into a file, which is not remembered as an input. What is no regular file has failed: a
+/// pipe would be waited for, a device may never end.
 std::ifstream OpenRegular(const std::string& path);
 
 /// Reports a text that is empty, is not UTF-8, or holds control characters (a binary file): those

@@ -24,6 +24,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "harness/base/base/input_files.h"
+
 namespace prehend {
 namespace {
 
@@ -206,7 +208,9 @@ class Pool {
       dup2(standard_error, STDERR_FILENO);
       if (interrupt_ != nullptr) interrupt_->ReleaseInWorker();
       const auto send = [&] {
-        WriteAll(ends[1], jobs_[job]());
+        (void)TakeNewInputs();
+        const std::string output = jobs_[job]();
+        WriteAll(ends[1], TakeNewInputs() + output);
         return 0;
       };
       Work(send, limits_, ends[1]);
@@ -285,7 +289,7 @@ class Pool {
     result.peak_memory_kib = usage.ru_maxrss;
     std::string stderr_tail = StderrTail(worker);
     if (result.finished) {
-      result.output = std::move(worker.output);
+      result.output = RememberInputs(worker.output);
       std::cerr << stderr_tail;
     } else {
       result.reason =

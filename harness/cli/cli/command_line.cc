@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "harness/base/base/atomic_file.h"
+#include "harness/base/base/input_files.h"
 #include "harness/base/base/project_paths.h"
 #include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
@@ -78,6 +79,14 @@ std::optional<Refusal> RefuseUnreadableFolders(const std::string& root) {
                                ReadableName(folder.string()), error.message())};
   }
   return std::nullopt;
+}
+
+/// All that is named and not written is an input, also before it is read.
+void RememberInputs(const Command& command, const ParsedOptions& options) {
+  for (const Option& one : command.options) {
+    if (one.is_output) continue;
+    for (const std::string& file : options.All(one.name)) RememberInput(file);
+  }
 }
 
 /// What a command writes (Option::is_output) must not replace what it reads, and must not lie among
@@ -164,6 +173,7 @@ ExitCode Run(const ChosenCommand& chosen, const std::vector<std::string>& words)
     return Refuse(context, "the name of the project's folder, " + ReadableName(*root) +
                                ", holds what is no printable text; rename it");
   context.root = *root;
+  RememberInputs(*chosen.command, chosen.options);
   for (const auto& refusal : {RefuseSmallStack(), RefuseUnreadableFolders(*root),
                               RefuseOutputsThatAreInputs(*root, *chosen.command, chosen.options)}) {
     if (refusal) return Complain(context, refusal->exit_code, refusal->reason);

@@ -269,7 +269,7 @@ ExitCode ProposeMap(const std::string& poses, const ParsedOptions& options,
   if (std::filesystem::exists(output, error) && !(there && *there == *map))
     return Refuse(context,
                   output + " is there, and has another content: wanted a new name, or - to print");
-  AtomicFile file(output);
+  AtomicFile file(output, Over::kAnything);
   if (!file.problem().empty()) return Refuse(context, file.problem());
   file.stream() << *map;
   if (const std::string problem = file.Commit(); !problem.empty())

@@ -88,12 +88,12 @@ std::string CoverageFileProblem(const std::string& file) {
 }
 
 ExitCode RunCoverage(const ParsedOptions& options, const CommandContext& context) {
+  PREHEND_TRY(const auto episodes, FindEpisodesOrComplain("EPISODES", options, context));
   const std::string output = options.Text("--output");
   if (!output.empty()) {
     if (const std::string why = WhyNotWritable(output); !why.empty())
       return Refuse(context, "--output: " + why);
   }
-  PREHEND_TRY(const auto episodes, FindEpisodesOrComplain("EPISODES", options, context));
   if (!options.Has("--grammar")) {
     if (const auto why = episode::WhyNotOneGrammar(episodes, context.root); !why.empty())
       return Complain(context, why);

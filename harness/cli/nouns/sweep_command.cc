@@ -39,12 +39,6 @@ std::optional<measure::SweepRequest> RequestFrom(const ParsedOptions& options,
   request.by_overlap = request.truth == measure::Truth::kLabels && !options.Has("--collar-ms");
   request.skip_bad_labels = options.Has("--skip-bad-labels");
   request.jobs = options.IntOr("--jobs", CoreCount());
-  for (const std::string& output : options.All("--output")) {
-    const std::string why = WhyNotWritable(output);
-    if (why.empty()) continue;
-    Refuse(context, "--output: " + why);
-    return std::nullopt;
-  }
   return request;
 }
 
@@ -55,6 +49,10 @@ tl::expected<std::vector<episode::Take>, ExitCode> TakesFrom(const ParsedOptions
                                                              const CommandContext& context) {
   auto takes = FindTakesOrComplain("EPISODES", options, context);
   if (!takes) return takes;
+  for (const std::string& output : options.All("--output")) {
+    const std::string why = WhyNotWritable(output);
+    if (!why.empty()) return tl::unexpected(Refuse(context, "--output: " + why));
+  }
   const auto of_test = std::erase_if(*takes, [](const auto& take) { return take.set == "test"; });
   if (takes->empty())
     return tl::unexpected(

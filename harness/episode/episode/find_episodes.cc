@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "harness/base/base/content_hash.h"
+#include "harness/base/base/input_files.h"
 #include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
 #include "harness/episode/episodes/database.h"
@@ -143,6 +144,8 @@ class TakeFinder {
     if (!known_.insert({std::move(file), episode.number, entry.take.labels, entry.take.rows})
              .second)
       return;
+    for (const std::string& read : {episode.file, entry.take.labels, entry.take.map})
+      RememberInput(read);
     episode.asked = entry.grammar;
     takes.push_back(entry.take);
     takes.back().episode = std::move(episode);

@@ -16,6 +16,7 @@
 
 #include "grammar/base/check.h"
 #include "grammar/base/frame.h"
+#include "harness/base/base/input_files.h"
 #include "harness/base/yaml/diagnostic_list.h"
 #include "harness/base/yaml/located_yaml.h"
 #include "harness/episode/sense/episode_file.h"
@@ -572,7 +573,7 @@ Result<Recording> ReadRecording(const std::string& path) {
     return refuse(std::filesystem::exists(path, error) ? "is not a regular file" : "no such file");
   if (const auto size = std::filesystem::file_size(path, error); error || size > kMaxEpisodeBytes)
     return refuse(fmt::format("is larger than {} MiB", kMaxEpisodeBytes >> 20));
-  std::ifstream stream(path, std::ios::binary);
+  std::ifstream stream = OpenInput(path);
   if (!stream) return refuse(std::string("cannot be read: ") + std::strerror(errno));
   for (std::string line; reader.diagnostics.empty() && std::getline(stream, line);) {
     if (line.ends_with('\r')) line.pop_back();  // written on Windows

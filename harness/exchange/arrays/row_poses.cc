@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "grammar/base/diagnostic.h"
+#include "harness/base/base/input_files.h"
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/arrays/read_array_poses.h"
 #include "harness/exchange/hdf5/hdf5_file.h"
@@ -301,7 +302,7 @@ Result<std::string> ReadBytes(const std::string& path) {
   if (std::filesystem::file_size(path, error) > kMaxPoseFileBytes)
     return tl::unexpected(
         ErrorOfFile(path, fmt::format("it is larger than {} MiB", kMaxPoseFileBytes >> 20)));
-  std::ifstream in(path, std::ios::binary);
+  std::ifstream in = OpenInput(path);
   std::ostringstream bytes;
   bytes << in.rdbuf();
   if (!in) return tl::unexpected(ErrorOfFile(path, "cannot be read"));

@@ -14,6 +14,7 @@
 #include <regex>
 #include <string_view>
 
+#include "harness/base/base/input_files.h"
 #include "harness/base/base/text_file.h"
 
 namespace prehend::exchange {
@@ -265,6 +266,7 @@ Result<Hdf5File> Hdf5File::Open(const std::string& path) {
     return tl::unexpected(file.Error(std::filesystem::exists(path, error)
                                          ? "it is a folder or a device; expected an HDF5 file"
                                          : "it does not exist, or cannot be read"));
+  RememberInput(path);
   const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_file_locking(access, true, true);
   file.file_ = Hdf5Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access));

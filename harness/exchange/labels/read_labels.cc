@@ -15,6 +15,7 @@
 #include <pugixml.hpp>
 #include <set>
 
+#include "harness/base/base/input_files.h"
 #include "harness/base/base/number_text.h"
 #include "harness/base/base/text_file.h"
 #include "harness/truth/golden/golden.h"
@@ -60,7 +61,7 @@ Result<std::string> ReadAnyUtf(const std::string& path) {
              little = mark[0] == '\xFF' && mark[1] == '\xFE';
   if ((!big && !little) || fs::file_size(path, error) > kMaxTextFileBytes)
     return ReadTextFile(path);
-  std::ifstream in(path, std::ios::binary);
+  std::ifstream in = OpenInput(path);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
   std::string text = FromUtf16(std::string_view(bytes).substr(2), big);
   Diagnostics strange = CheckText(path, text);

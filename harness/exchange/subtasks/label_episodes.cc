@@ -178,9 +178,6 @@ tl::expected<std::vector<Subtasks>, episode::NotFound> LabelEpisodes(
     const std::string& source = all.front().source;
     const Result<Hdf5File> file = Hdf5File::Open(source);
     if (!file) return tl::unexpected(episode::NotFound{.diagnostics = file.error()});
-    std::error_code error;
-    if (std::filesystem::equivalent(source, request.hdf5, error))
-      return Refused("--output: " + request.hdf5 + " is the original; name another file");
     std::vector<Hdf5Signal> signals;
     for (Subtasks& one : all) {
       if (one.missing.empty()) AddSignalsOf(*file, map->map, one, signals);

@@ -112,7 +112,7 @@ Segmented Episode::Segment(const Grammar* grammar) const {
 
 void Episode::WriteFrames(const std::string& file) const {
   impl_->WithFrames([&](episode::Episode& episode) {
-    AtomicFile out(file);
+    AtomicFile out(file, Over::kAnything);  // what is replaced, a program decides
     if (!out.problem().empty()) Refuse(file, out.problem());
     episode::EpisodeWriter writer(out.stream(), episode.Header());
     const auto end = episode.EachFrame([&](const grammar::Frame& frame) { writer.Write(frame); });
@@ -133,8 +133,8 @@ void Episode::WriteLabels(const grammar::Timeline& timeline, const std::string& 
   std::strftime(date, sizeof date, "%Y-%m-%d", localtime_r(&now, &parts));
   truth::HandRoles hands;
   if (grammar) hands = truth::HandRolesOf(EventSignatures(*grammar->program()));
-  const std::string problem =
-      WriteTextFile(file, exchange::LabelsText(ending, timeline, hands, end(), date));
+  const std::string problem = WriteTextFile(
+      file, exchange::LabelsText(ending, timeline, hands, end(), date), Over::kAnything);
   if (!problem.empty()) Refuse(file, problem);
 }
 

@@ -155,7 +155,7 @@ std::string WriteGoldenFile(const fs::path& path, const Golden& golden) {
     return "the golden would not be readable, and was not written:\n" + Format(read.error());
   if (!(*read == golden))
     return "the golden would read back otherwise, and was not written; use plain words in reasons";
-  return WriteTextFile(path, text);
+  return WriteTextFile(path, text, Over::kAnything);
 }
 
 fs::path GoldenFiles::GoldenPath(const std::string& scenario) const {
@@ -175,7 +175,7 @@ Result<std::optional<Golden>> GoldenFiles::ReadPendingOf(const std::string& scen
 }
 
 std::string GoldenFiles::WritePending(const Golden& golden) const {
-  return WriteTextFile(PendingPath(golden.scenario), WriteGolden(golden));
+  return WriteTextFile(PendingPath(golden.scenario), WriteGolden(golden), Over::kAnything);
 }
 
 std::string GoldenFiles::WriteGoldenFile(const Golden& golden) const {
@@ -204,7 +204,7 @@ std::string GoldenFiles::ReadEngineDifference(const std::string& scenario) const
 std::string GoldenFiles::WriteEngineDifference(const std::string& scenario,
                                                const std::string& text) const {
   const fs::path file = EngineDifferencePath(scenario);
-  if (!text.empty()) return WriteTextFile(file, text);
+  if (!text.empty()) return WriteTextFile(file, text, Over::kAnything);
   std::error_code ignored;
   fs::remove(file, ignored);
   return "";

@@ -12,6 +12,9 @@
 #include <fstream>
 #include <iterator>
 
+#include "harness/base/base/input_files.h"
+#include "harness/base/process/worker_pool.h"
+
 namespace prehend {
 namespace {
 
@@ -187,6 +190,41 @@ TEST_F(AtomicFileTest, WhatCannotBeWrittenIsKnownBefore) {
   EXPECT_EQ(WhyNotWritable(""), "cannot write : it names no file");
   EXPECT_EQ(WhyNotWritable(folder_ / "new/"),
             "cannot write " + (folder_ / "new/").string() + ": it is a folder");
+}
+
+TEST_F(AtomicFileTest, AnInputIsNotReplaced) {
+  const fs::path input = folder_ / "a", link = folder_ / "soft", hard = folder_ / "hard";
+  ASSERT_EQ(WriteTextFile(input, "old"), "");
+  fs::create_symlink("a", link);
+  fs::create_hard_link(input, hard);
+  AtomicFile begun(input);
+  EXPECT_TRUE(OpenInput(input.string()));
+  for (const fs::path& path : {input, link, hard, folder_ / "." / "a"})
+    EXPECT_EQ(WriteTextFile(path, "new"),
+              "cannot write " + path.string() + ": it is what is read; name another file");
+  begun.stream() << "new";
+  EXPECT_EQ(begun.Commit(), Cannot("a", "it is what is read; name another file"))
+      << "read after it was opened";
+  EXPECT_EQ(Read(input), "old");
+  EXPECT_EQ(WriteTextFile(input, "new", Over::kAnything), "");
+  EXPECT_EQ(WriteTextFile(input, "newer"), "") << "what was read is not there any more";
+  EXPECT_EQ(WriteTextFile(folder_ / "b", "new"), "");
+}
+
+TEST_F(AtomicFileTest, AnInputOfAWorkerIsOne) {
+  const fs::path one = folder_ / "one", two = folder_ / "two", no = folder_ / "no";
+  for (const fs::path& path : {one, two, no}) ASSERT_EQ(WriteTextFile(path, "old"), "");
+  const std::vector<WorkerResult> results = RunInWorkers({[&] {
+                                                            OpenInput(one.string());
+                                                            OpenInput(two.string());
+                                                            return std::string("\0said", 5);
+                                                          },
+                                                          [] { return std::string(); }},
+                                                         {});
+  EXPECT_EQ(results[0].output, std::string("\0said", 5));
+  EXPECT_EQ(results[1].output, "");
+  EXPECT_TRUE(IsInput(one) && IsInput(two));
+  EXPECT_FALSE(IsInput(no));
 }
 
 }  // namespace
