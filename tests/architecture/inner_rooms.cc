@@ -43,7 +43,7 @@ const Arrows& ProjectArrows() {
       {"render", {"physics/base", "physics/scene", "render/gl", "render/image"}},
 
       {"harness/base/base", {"grammar/base"}},
-      {"harness/base/process", {}},
+      {"harness/base/process", {"harness/base/base"}},
       {"harness/truth/timeline", {"grammar", "grammar/base"}},
       // An evaluator of its own: it never sees what it judges.
       {"harness/truth/oracle", {"grammar/base", "physics/scene"}},
