@@ -364,6 +364,8 @@ std::string EventLines(const truth::Golden& golden) {
     role_columns = std::max(role_columns, line.event.roles.size());
   for (const truth::GoldenEvent& line : golden.events) {
     rows.push_back(truth::EventCells(line.event, golden.ticks_per_second, role_columns));
+    for (const grammar::NamedValue& value : line.event.values)
+      rows.back().push_back(value.name + "=" + truth::ValueText(value));
   }
   std::string text;
   for (const std::string& line : truth::AlignColumns(rows)) text += line + "\n";

@@ -41,6 +41,13 @@ const grammar::Timeline kShiftedWithoutFixation =
     Recognised({{.event = "reaching", .interval = {250, 500}},
                 {.event = "grasping", .interval = {500, 1440}}});
 
+TEST(EventLines, HaveTheValuesThatAreAccepted) {
+  truth::Golden golden = Old();
+  golden.events.resize(1);
+  golden.events[0].event.values = {{.name = "way", .value = 0.6002}};
+  EXPECT_EQ(EventLines(golden), "reaching  0.5000  1.0000  hand=hand  object=cup    way=0.6002\n");
+}
+
 TEST(ProposeGolden, KeepsWhatPeopleWrote) {
   const truth::Golden golden =
       ProposeGolden(Old(), kShiftedWithoutFixation,
