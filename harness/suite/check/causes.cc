@@ -86,7 +86,7 @@ std::vector<std::string> WhatChanged(const LastPass& last_pass, const DifferingR
     }
   }
   for (const auto& [path, hash] : last_pass.verdict.inputs)
-    if (!now.inputs.contains(path)) add_unless_replaced(path);
+    if (hash != kNoFile && !now.inputs.contains(path)) add_unless_replaced(path);
   if (last_pass.program != now.program) changed.push_back(ProgramText(last_pass, now));
   changed.insert(changed.end(), now.options.begin(), now.options.end());
   return changed;

@@ -84,6 +84,12 @@ std::optional<LastPass> LastPasses::Read(const std::string& scenario) const {
                     .pictures = json.at("pictures"),
                     .verdict = UnpackedVerdict(json.at("verdict"))};
     if (record.verdict.scenario != scenario || record.verdict.inputs.empty()) return std::nullopt;
+    // The project may have been elsewhere then.
+    const std::string there = json.value("root", root_) + "/", here = root_ + "/";
+    FileHashes inputs;
+    for (const auto& [path, hash] : record.verdict.inputs)
+      inputs[path.starts_with(there) ? here + path.substr(there.size()) : path] = hash;
+    record.verdict.inputs = std::move(inputs);
     return record;
   } catch (const RecordJson::exception&) {
     return std::nullopt;
@@ -93,6 +99,7 @@ std::optional<LastPass> LastPasses::Read(const std::string& scenario) const {
 std::string LastPasses::Write(const LastPass& record) const {
   const RecordJson json = {{"program", record.program},
                            {"build", record.build},
+                           {"root", root_},
                            {"passed", record.passed},
                            {"pictures", record.pictures},
                            {"verdict", Packed(record.verdict)}};

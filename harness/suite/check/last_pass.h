@@ -40,7 +40,8 @@ std::vector<std::string> ChangedInputs(const LastPass& record);
 class LastPasses {
  public:
   explicit LastPasses(const std::filesystem::path& project_root)
-      : folder_(std::filesystem::path(BuildFolder(project_root)) / "check") {}
+      : root_(project_root.string()),
+        folder_(std::filesystem::path(BuildFolder(project_root)) / "check") {}
 
   /// `scenario` is its id, here and below. Nothing without a readable record.
   std::optional<LastPass> Read(const std::string& scenario) const;
@@ -59,6 +60,7 @@ class LastPasses {
   std::string WriteCosts(const Costs& costs) const;
 
  private:
+  std::string root_;
   std::filesystem::path folder_;
 };
 

@@ -50,6 +50,21 @@ TEST_F(LastPassesTest, ARecordComesBackAndNoticesChanges) {
   EXPECT_EQ(ChangedInputs(*read), (std::vector<std::string>{a, b, later}));
 }
 
+TEST_F(LastPassesTest, AProjectThatWasMovedHasItsFiles) {
+  const std::string a = File("a", "one"), none = (root_ / "none").string(), other = "/dev/null";
+  LastPass record{.program = "p", .verdict = {.scenario = "slide/x"}};
+  record.verdict.inputs = HashFiles({a, none, other});
+  ASSERT_EQ(records_.Write(record), "");
+  const fs::path there = root_.string() + "-moved";
+  fs::rename(root_, there);
+  const auto read = LastPasses(there).Read("slide/x");
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->verdict.inputs,
+            HashFiles({(there / "a").string(), (there / "none").string(), other}));
+  EXPECT_TRUE(ChangedInputs(*read).empty());
+  fs::remove_all(there);
+}
+
 TEST_F(LastPassesTest, DamagedOnesAreNone) {
   EXPECT_FALSE(records_.Read("slide/x"));
   for (const char* text : {"", "{", "[]", "{\"program\": 1}", "null"}) {
