@@ -415,10 +415,10 @@ show(What, When) :-
     ( nb_current(prehend_shown, Before) -> true ; Before = [] ),
     b_setval(prehend_shown, [Shown.put(episode, Episode) | Before]).
 
-shown(world(T), none, _{what: world, from: T, to: T}) :- number(T).
+shown(world(T), none, _{what: world, from: T, to: T}) :- exact_in_json(T).
 shown(trajectory(X), [S, E], _{what: trajectory, of: Label, from: S, to: E}) :-
-    number(S), number(E), label_of(X, Label).
-shown(marker(X), T, _{what: marker, of: Label, from: T, to: T}) :- number(T), label_of(X, Label).
+    maplist(exact_in_json, [S, E]), label_of(X, Label).
+shown(marker(X), T, _{what: marker, of: Label, from: T, to: T}) :- exact_in_json(T), label_of(X, Label).
 
 label_of(X, _) :- var(X), throw(refused("found ~q, wanted an individual: entity(X, ..) before it says which"-[X])).
 label_of(X, Label) :- atom(X), once(( value(X, rdfs:label, Label), atom(Label) )).
@@ -478,7 +478,8 @@ ask_all(Folder, Most, Seconds, End) :-
 
 read_query(Text, Goal, Names) :-
     catch(read_goal(Text, Goal0, Names), Error, true),
-    (   var(Error) -> ( nonvar(Goal0), Goal0 = (?- Goal1) -> Goal = Goal1 ; Goal = Goal0 )
+    (   var(Error), Goal0 == end_of_file -> throw(refused("the query is empty"-[]))
+    ;   var(Error) -> ( nonvar(Goal0), Goal0 = (?- Goal1) -> Goal = Goal1 ; Goal = Goal0 )
     ;   Error = error(syntax_error(What), Context)
     ->  ( Context = stream(_, _, _, At) -> true ; At = 0 ),
         (   string_chars(Text, Chars), bracket_fault(Chars, 1, [], Fault) -> throw(refused(Fault))
@@ -552,21 +553,15 @@ with_episode(Shown, Shown.put(_{file: File, number: Number})) :-
 put_binding(Name = Value, Bindings, Bindings.put(Name, Said)) :- in_json(Value, Said).
 in_json(Value, '_') :- var(Value), !.
 in_json(Value, Text) :- cyclic_term(Value), !, as_text("~q", [Value], Text).
-in_json(Value, Said) :- number(Value), number_in_json(Value, Said), !.
+in_json(Value, Value) :- number(Value), exact_in_json(Value), !.
+in_json(Value, Said) :- float(Value), !, ( Value > 0 -> Said = inf ; Value < 0 -> Said = '-inf' ; Said = nan ).
 in_json(Value, _{iri: Value, text: Text}) :- is_iri(Value), !, text_of(Value, Text).
 in_json(Value, Value) :- ( atom(Value) ; string(Value) ), !.
 in_json(composed(Type, Members), _{text: Text, parts: Parts}) :- is_list(Members), !,
     maplist(in_json, Members, Parts), as_text("~w", [Type], Text).
 in_json(Value, Values) :- is_list(Value), !, maplist(in_json, Value, Values).
 in_json(Value, Text) :- as_text("~q", [Value], Text).
-number_in_json(Value, Value) :- integer(Value), !, abs(Value) < 1 << 53.
-number_in_json(Value, Said) :-
-    float(Value),
-    (   Value =\= Value -> Said = nan
-    ;   Value =:= inf -> Said = inf
-    ;   Value =:= -inf -> Said = '-inf'
-    ;   Said = Value
-    ).
+exact_in_json(Value) :- ( float(Value) -> abs(Value) < inf ; integer(Value), abs(Value) < 1 << 53 ).
 
 % An event is called as in a timeline: Sliding(right_hand, milk).
 text_of(Iri, Text) :- label_of(Iri, Text), !.
@@ -596,5 +591,7 @@ why(error(instantiation_error, _), Why) :- !, Why = "a variable has no value whe
 why(error(Formal, _), Why) :- !, format(string(Why), "~p", [Formal]).
 why(Error, Why) :- format(string(Why), "~p", [Error]).
 
+% An atom is a text, also null, true and false.
 put_line(Dict) :-
-    with_output_to(string(Line), json_write_dict(current_output, Dict, [width(0)])), writeln(Line), flush_output.
+    Options = [width(0), null(no(null)), true(no(true)), false(no(false))],
+    with_output_to(string(Line), json_write_dict(current_output, Dict, Options)), writeln(Line), flush_output.
