@@ -331,6 +331,18 @@ TEST(Knowledge, AThingMayBeCalledNull) {
       << unknown.err;
 }
 
+TEST(Knowledge, OfABadFileNothingIsWritten) {
+  const fs::path folder = FreshFolder("knowledge_bad"), bad = folder / "bad.episodes",
+                 kb = folder / "kb";
+  std::string bytes = ReadFile(ThreeDays().file);
+  bytes[bytes.size() - 2048 - 100] ^= 1;
+  WriteFile(bad, bytes);
+  const Said said = Prehend({"episode", "knowledge", ThreeDays().file, bad, "-o", kb});
+  EXPECT_EQ(said.exit_code, 2) << said.out;
+  EXPECT_NE(said.err.find("the file is damaged"), std::string::npos) << said.err;
+  EXPECT_FALSE(fs::exists(kb));
+}
+
 TEST(Knowledge, AllensOwnWordsAreKnown) {
   const std::string& kb = ThreeDays().kb;
   const auto pairs = [&](const std::string& relation) {

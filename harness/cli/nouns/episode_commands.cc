@@ -383,10 +383,18 @@ ExitCode RunKnowledge(const ParsedOptions& options, const CommandContext& contex
     return std::ranges::find(forms, form) != forms.end();
   };
   const std::string folder = options.TextOr("--output", "kb");
-  const auto kept = episode::EpisodeKeeper(context.root, context.today, folder).KeepAll(episodes);
+  const TemporaryFolder unfinished;
+  if (!unfinished.problem().empty())
+    return Complain(context, ExitCode::kFailure, unfinished.problem());
+  const std::string made = unfinished.path().string();
+  const auto kept = episode::EpisodeKeeper(context.root, context.today, made).KeepAll(episodes);
   if (!kept) return Complain(context, kept.error());
-  const Result<exchange::KnowledgeWritten> written = exchange::WriteKnowledge(
-      *kept, {.root = context.root, .folder = folder, .owl = asked("owl"), .neem = asked("neem")});
+  const Result<exchange::KnowledgeWritten> written =
+      exchange::WriteKnowledge(*kept, {.root = context.root,
+                                       .folder = folder,
+                                       .unfinished = made,
+                                       .owl = asked("owl"),
+                                       .neem = asked("neem")});
   if (!written) return Complain(context, written.error());
   context.out << fmt::format("{}: {} episodes of {} tasks, {} events, {} statements\n", folder,
                              written->episodes, written->tasks, written->events,

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <map>
 
 #include "grammar/contents.h"
@@ -93,7 +94,10 @@ class KnowledgeWriter {
     PREHEND_TRY(episode::Episode opened, opener_.Open(name));
     file_ = opened.file();
     const episode::EpisodeRow* row = opened.row();
-    EpisodeOfTask episode{.row = *row, .file = fs::absolute(name.file).string()};
+    const fs::path made = fs::path(name.file).lexically_relative(request_.unfinished);
+    const bool is_made = !made.empty() && *made.begin() != "..";
+    const fs::path file = is_made ? request_.folder / made : fs::path(name.file);
+    EpisodeOfTask episode{.row = *row, .file = fs::absolute(file).string()};
     PREHEND_TRY(episode.timeline, opened.Recorded());
     for (const grammar::EventSignature& event : grammar::EventSignatures(*opened.program()))
       if (event.composed) episode.composed.insert(event.name);
@@ -105,6 +109,18 @@ class KnowledgeWriter {
     grammar::Diagnostics bad = WriteTriples("episodes/" + row->uuid, triples);
     if (bad.empty() && request_.neem) bad = WriteNeem(*row, *map, triples, opened);
     return bad;
+  }
+
+  /// Moves all to its place. Returns what could not be written.
+  grammar::Diagnostics Finish() const {
+    for (const auto& file : fs::recursive_directory_iterator(request_.unfinished)) {
+      if (!file.is_regular_file()) continue;
+      AtomicFile finished(request_.folder / file.path().lexically_relative(request_.unfinished));
+      finished.stream() << std::ifstream(file.path(), std::ios::binary).rdbuf();
+      const std::string problem = finished.Commit();
+      if (!problem.empty()) return Problem(request_.folder, problem);
+    }
+    return {};
   }
 
   const KnowledgeWritten& written() const { return written_; }
@@ -138,20 +154,23 @@ class KnowledgeWriter {
   }
 
   grammar::Diagnostics WriteText(const std::string& name, const std::string& turtle) {
-    const std::string file = request_.folder + "/" + name;
-    const std::string problem = WriteTextFile(file + ".ttl", turtle);
-    if (!problem.empty()) return Problem(file + ".ttl", problem);
-    if (!request_.owl) return {};
+    grammar::Diagnostics bad = WriteBytes(name + ".ttl", turtle);
+    if (!bad.empty() || !request_.owl) return bad;
     const ToolResult xml = RunTool({"rapper", "--quiet", "--input", "turtle", "--output",
                                     "rdfxml-abbrev", "-", "http://prehend.local/"},
                                    turtle);
     if (!xml.Succeeded()) {
       std::string why = xml.problem.empty() ? "rapper: " + xml.err : xml.problem;
       if (why.ends_with("is not installed")) why += "; Debian's package raptor2-utils has it";
-      return Problem(file + ".owl", why);
+      return Problem(request_.folder + "/" + name + ".owl", why);
     }
-    const std::string unwritten = WriteTextFile(file + ".owl", xml.out);
-    return unwritten.empty() ? grammar::Diagnostics() : Problem(file + ".owl", unwritten);
+    return WriteBytes(name + ".owl", xml.out);
+  }
+
+  grammar::Diagnostics WriteBytes(const std::string& name, const std::string& bytes) {
+    const std::string problem = WriteTextFile(fs::path(request_.unfinished) / name, bytes);
+    return problem.empty() ? grammar::Diagnostics()
+                           : Problem(request_.folder + "/" + name, problem);
   }
 
   grammar::Diagnostics WriteNeem(const episode::EpisodeRow& row, const MapOfTask& map,
@@ -175,7 +194,7 @@ class KnowledgeWriter {
           return true;
         });
     if (!played) return played.error();
-    const std::string folder = request_.folder + "/neem/" + row.uuid + "/";
+    const std::string folder = "neem/" + row.uuid + "/";
     for (const auto& [name, bytes] : {std::pair{"triples", TriplesBson(all, hierarchy_)},
                                       std::pair{"tf", TransformsBson(transforms)},
                                       std::pair{"annotations", AnnotationsBson(all)}}) {
@@ -186,8 +205,8 @@ class KnowledgeWriter {
           name + "\"}\n";
       for (const auto& [ending, content] :
            {std::pair{".bson", &bytes}, std::pair{".metadata.json", &metadata}}) {
-        const std::string problem = WriteTextFile(folder + name + ending, *content);
-        if (!problem.empty()) return Problem(folder + name + ending, problem);
+        grammar::Diagnostics bad = WriteBytes(folder + name + ending, *content);
+        if (!bad.empty()) return bad;
       }
     }
     return {};
@@ -230,6 +249,7 @@ Result<KnowledgeWritten> WriteKnowledge(const std::vector<episode::EpisodeName>&
     if (const grammar::Diagnostics bad = writer.Write(episode); !bad.empty())
       return tl::unexpected(bad);
   }
+  if (const grammar::Diagnostics bad = writer.Finish(); !bad.empty()) return tl::unexpected(bad);
   return writer.written();
 }
 
