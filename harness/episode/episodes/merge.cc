@@ -42,35 +42,60 @@ constexpr Rows kOfEpisode[] = {{"note", "episode", "position", 1},
                                {"chunk", "episode", "first_tick", 1},
                                {"part", "episode", "id", 2}};
 
-Statement Select(const Database& database, const Rows& rows) {
-  return database.Prepare(
-      fmt::format("SELECT * FROM {} WHERE {} = ? ORDER BY {}", rows.table, rows.of, rows.order));
+/// Of the tables that this program makes: a file may have more of them, in another order.
+std::string ColumnsOf(const Database& into, const std::string& table) {
+  Statement names = into.Prepare("SELECT group_concat(name) FROM pragma_table_info(?)");
+  names.Bind(table).Step();
+  return names.Text(0);
 }
 
-Statement Insert(const Database& database, const char* table) {
-  const Statement columns = database.Prepare(fmt::format("SELECT * FROM {}", table));
+Statement Select(const Database& from, const Database& into, const std::string& table,
+                 const std::string& which) {
+  return from.Prepare(
+      fmt::format("SELECT {} FROM {} WHERE {}", ColumnsOf(into, table), table, which));
+}
+
+Statement Select(const Database& from, const Database& into, const Rows& rows) {
+  return Select(from, into, rows.table, fmt::format("{} = ? ORDER BY {}", rows.of, rows.order));
+}
+
+Statement Insert(const Database& into, const std::string& table, const char* if_there = "") {
+  const std::string columns = ColumnsOf(into, table);
   std::string values = "?";
-  for (int i = 1; i < columns.Columns(); ++i) values += ", ?";
-  return database.Prepare(fmt::format("INSERT OR IGNORE INTO {} VALUES({})", table, values));
+  for (auto more = std::ranges::count(columns, ','); more > 0; --more) values += ", ?";
+  return into.Prepare(
+      fmt::format("INSERT INTO {}({}) VALUES({}) {}", table, columns, values, if_there));
+}
+
+/// Adds this row, whose columns have been bound.
+void RunFor(Statement& insert, const char* table, const Statement& row) {
+  try {
+    insert.Run();
+  } catch (const DatabaseError& error) {
+    const std::string why = error.what();
+    if (why.find("constraint failed") == std::string::npos) throw;
+    throw DatabaseError(fmt::format("the file is damaged: row ({}, {}) of its table '{}': {}",
+                                    row.Text(0), row.Text(1), table, why));
+  }
 }
 
 /// Adds a row with other numbers in its first columns: its own, which the database gives (`first`
 /// is 2), and that of what it belongs to.
-void Add(const Statement& row, int first, std::int64_t owner, Statement& insert) {
-  if (first == 2) insert.BindNothing();
+void Add(const Statement& row, const Rows& rows, std::int64_t owner, Statement& insert) {
+  if (rows.first == 2) insert.BindNothing();
   insert.Bind(owner);
-  for (int column = first; column < row.Columns(); ++column) insert.BindColumn(row, column);
-  insert.Run();
+  for (int column = rows.first; column < row.Columns(); ++column) insert.BindColumn(row, column);
+  RunFor(insert, rows.table, row);
 }
 
 /// A file to read from.
 struct Source {
-  explicit Source(const std::string& path)
+  Source(const std::string& path, const Database& into)
       : database(OpenToRead(path)),
-        episode(database.Prepare("SELECT * FROM episode WHERE id = ?")),
-        events(Select(database, kEvents)) {
-    for (const Rows& rows : kOfEvent) of_event.push_back(Select(database, rows));
-    for (const Rows& rows : kOfEpisode) of_episode.push_back(Select(database, rows));
+        episode(Select(database, into, "episode", "id = ?")),
+        events(Select(database, into, kEvents)) {
+    for (const Rows& rows : kOfEvent) of_event.push_back(Select(database, into, rows));
+    for (const Rows& rows : kOfEpisode) of_episode.push_back(Select(database, into, rows));
   }
 
   /// Everything but when it was recorded and by which numbers of rows.
@@ -117,7 +142,7 @@ class Merger {
         sources_(files.size()),
         into_(into),
         task_(Insert(into, "task")),
-        asset_(Insert(into, "asset")),
+        asset_(Insert(into, "asset", "ON CONFLICT(hash) DO NOTHING")),
         episode_(Insert(into, "episode")),
         event_(Insert(into, "event")) {
     for (const Rows& rows : kOfTask) of_task_.push_back(Insert(into, rows.table));
@@ -166,7 +191,7 @@ class Merger {
         for (auto& source : sources_) source.reset();
         open_ = 0;
       }
-      sources_[file].emplace(files_[file]);
+      sources_[file].emplace(files_[file], into_);
       ++open_;
     }
     return *sources_[file];
@@ -186,7 +211,7 @@ class Merger {
     const auto look = [&](std::size_t file) {
       Statement find = Open(file).database.Prepare(
           "SELECT episode.uuid, task.uuid, scenario, status <> 'recording', episode.id FROM episode"
-          " JOIN task ON task.id = episode.task ORDER BY episode.id");
+          " LEFT JOIN task ON task.id = episode.task ORDER BY episode.id");
       std::vector<Found> here;
       while (find.Step())
         here.push_back({find.Uuid(0), find.Uuid(1), find.Text(2), find.Integer(3) != 0, file,
@@ -224,44 +249,43 @@ class Merger {
     const Statement& row = from.episode;
     episode_.BindNothing().BindColumn(row, 1).Bind(TaskOf(from, row.Integer(2), one.task));
     for (int column = 3; column < row.Columns(); ++column) episode_.BindColumn(row, column);
-    episode_.Run();
+    RunFor(episode_, "episode", row);
     const std::int64_t id = into_.LastRow();
     from.events.Reset();
     for (from.events.Bind(one.id); from.events.Step();) {
-      Add(from.events, 2, id, event_);
+      Add(from.events, kEvents, id, event_);
       const std::int64_t event = into_.LastRow();
       for (std::size_t i = 0; i < of_event_.size(); ++i)
-        CopyAll(from.of_event[i], from.events.Integer(0), kOfEvent[i].first, event, of_event_[i]);
+        CopyAll(from.of_event[i], kOfEvent[i], from.events.Integer(0), event, of_event_[i]);
     }
     for (std::size_t i = 0; i < of_episode_.size(); ++i)
-      CopyAll(from.of_episode[i], one.id, kOfEpisode[i].first, id, of_episode_[i]);
+      CopyAll(from.of_episode[i], kOfEpisode[i], one.id, id, of_episode_[i]);
   }
 
-  static void CopyAll(Statement& rows, std::int64_t owner, int first, std::int64_t new_owner,
-                      Statement& insert) {
-    rows.Reset();
-    for (rows.Bind(owner); rows.Step();) Add(rows, first, new_owner, insert);
+  static void CopyAll(Statement& found, const Rows& rows, std::int64_t owner,
+                      std::int64_t new_owner, Statement& insert) {
+    found.Reset();
+    for (found.Bind(owner); found.Step();) Add(found, rows, new_owner, insert);
   }
 
   std::int64_t TaskOf(const Source& from, std::int64_t id, const std::string& uuid) {
     const auto known = tasks_.find(uuid);
     if (known != tasks_.end()) return known->second;
-    Statement row = from.database.Prepare("SELECT * FROM task WHERE id = ?");
+    Statement row = Select(from.database, into_, "task", "id = ?");
     row.Bind(id).Step();
     task_.BindNothing();
     for (int column = 1; column < row.Columns(); ++column) task_.BindColumn(row, column);
-    task_.Run();
+    RunFor(task_, "task", row);
     const std::int64_t task = into_.LastRow();
-    Statement assets = from.database.Prepare(
-        "SELECT * FROM asset WHERE hash IN (SELECT hash FROM task_asset WHERE task = ?)"
-        " ORDER BY hash");
+    Statement assets = Select(from.database, into_, "asset",
+                              "hash IN (SELECT hash FROM task_asset WHERE task = ?) ORDER BY hash");
     for (assets.Bind(id); assets.Step();) {
       for (int column = 0; column < assets.Columns(); ++column) asset_.BindColumn(assets, column);
-      asset_.Run();
+      RunFor(asset_, "asset", assets);
     }
     for (std::size_t i = 0; i < of_task_.size(); ++i) {
-      Statement rows = Select(from.database, kOfTask[i]);
-      CopyAll(rows, id, kOfTask[i].first, task, of_task_[i]);
+      Statement found = Select(from.database, into_, kOfTask[i]);
+      CopyAll(found, kOfTask[i], id, task, of_task_[i]);
     }
     return tasks_[uuid] = task;
   }
@@ -308,6 +332,8 @@ Result<Merged> MergeEpisodes(std::span<const std::string> files, const std::stri
     Transaction transaction(into);
     Merged done = Merger(files, into).Run();
     transaction.Commit();
+    // What undoes the half of an old file there would undo this one.
+    if (fs::exists(target + "-journal")) (void)OpenToWrite(target);
     return done;
   });
   if (merged) {

@@ -5,14 +5,18 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
+#include "harness/base/base/content_hash.h"
 #include "harness/episode/episodes/database.h"
 #include "harness/episode/episodes/load_episode.h"
+#include "harness/episode/episodes/plan.h"
 #include "harness/episode/episodes/query_events.h"
 #include "harness/episode/episodes/record_episode.h"
 #include "harness/episode/run/run_text.h"
@@ -333,6 +337,49 @@ TEST(EpisodeFileOfMany, AJournalOfAnotherRemovesNothing) {
   fs::remove(beside);
   EXPECT_EQ(refused(file, OpenToRead), "");
   EXPECT_EQ(Slurped(file), bytes);
+}
+
+TEST(EpisodeFileOfMany, AnAlteredFileIsMergedByNameOrRefused) {
+  const fs::path folder = Fresh("altered"), good = folder / "a.episodes",
+                 bad = folder / "b.episodes", out = folder / "c.episodes";
+  ASSERT_EQ(Record(good.string()).problem, "");
+  const EpisodeRow row = EpisodeFile::Open(good)->episodes()[0];
+  const auto merged = [&](const std::string& table, const std::string& columns) {
+    fs::copy_file(good, bad, fs::copy_options::overwrite_existing);
+    Database(bad, Database::Mode::kWrite)
+        .Execute("DROP VIEW events_flat; DROP VIEW episodes_flat; CREATE TABLE other AS SELECT " +
+                 columns + " FROM " + table + "; DROP TABLE " + table +
+                 "; ALTER TABLE other RENAME TO " + table);
+    const std::string files[] = {bad.string()};
+    const auto done = MergeEpisodes(files, out);
+    return done ? "" : done.error().front().message;
+  };
+  const std::string others =
+      "failure_advice, failure_reason, failure_entity, 'x' AS remark, recorded_on, program_hash, "
+      "program, seed, engine, state_hash, ticks, ticks_per_second, status, task, uuid, id, ";
+  EXPECT_EQ(merged("episode", others + "outcome, grammar"), "");
+  const EpisodeRow again = EpisodeFile::Open(out)->episodes()[0];
+  EXPECT_EQ(again.status + again.grammar + again.state_hash + again.uuid,
+            row.status + row.grammar + row.state_hash + row.uuid);
+  fs::remove(out);
+  const std::string begin = bad.string() + ": the file is damaged: row (1, ";
+  EXPECT_EQ(
+      merged("episode", others + "grammar, NULL AS outcome"),
+      begin + row.uuid + ") of its table 'episode': NOT NULL constraint failed: episode.outcome");
+  EXPECT_EQ(merged("entity", "*, 1 AS x"), "");
+  fs::remove(out);
+  EXPECT_EQ(
+      merged(
+          "entity",
+          "task, 0 AS number, uuid, name, class, part_of, mass_kg, size_x_m, size_y_m, size_z_m"),
+      begin + "0) of its table 'entity': UNIQUE constraint failed: entity.task, entity.number");
+  EXPECT_NE(merged("asset", "hash, bytes, NULL AS content")
+                .find(") of its table 'asset': NOT NULL constraint failed: asset.content"),
+            std::string::npos);
+  EXPECT_NE(merged("task", "id + 9 AS id, uuid, scenario, file, asked_grammar, settings, shows"),
+            "")
+      << "the episode has no task";
+  EXPECT_FALSE(fs::exists(out));
 }
 
 TEST(EpisodeFileOfMany, EveryDamagedByteIsReportedOrHarmless) {
