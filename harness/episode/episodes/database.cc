@@ -25,11 +25,18 @@ namespace {
 
 constexpr int kPatience_ms = 60'000;
 
+/// A program that wrote to it was killed, and left what undoes the half.
+class HalfWritten : public DatabaseError {
+  using DatabaseError::DatabaseError;
+};
+
 [[noreturn]] void Throw(sqlite3* database) {
   switch (sqlite3_errcode(database) & 0xff) {
     case SQLITE_FULL:
       throw DatabaseError("the disk is full");
     case SQLITE_READONLY:
+      if (sqlite3_extended_errcode(database) == SQLITE_READONLY_ROLLBACK)
+        throw HalfWritten("the program that wrote to it was killed");
       throw DatabaseError("the file, or its folder, cannot be written");
     case SQLITE_CORRUPT:
       throw DatabaseError("the file is damaged");
@@ -164,16 +171,23 @@ std::string WhyNotEpisodes(const std::string& path) {
   const std::uint64_t pages = byte(28) << 24 | byte(29) << 16 | byte(30) << 8 | byte(31);
   const std::uint64_t wanted = (page == 1 ? 65536 : page) * pages;
   const std::uintmax_t size = fs::file_size(path, error);
-  if (!fs::exists(path + "-journal") && size < wanted)
+  const std::string beside = fs::weakly_canonical(path, error).string();
+  const fs::file_type journal = fs::symlink_status(beside + "-journal", error).type();
+  if (journal == fs::file_type::not_found && size < wanted)
     return fmt::format("is cut off: it has {} of {} bytes", size, wanted);
   // SQLite undoes what a journal says, and removes the file that one ends with: ours names none.
-  const std::string journal = fs::weakly_canonical(path, error).string() + "-journal";
-  const fs::file_type type = fs::symlink_status(journal, error).type();
   std::string end(8, '\0');
-  if (type == fs::file_type::regular)
-    std::ifstream(journal, std::ios::binary).seekg(-8, std::ios::end).read(end.data(), 8);
-  const bool is_ours = type == fs::file_type::regular && end != "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";
-  return is_ours || type == fs::file_type::not_found ? "" : "has a -journal of another program";
+  if (journal == fs::file_type::regular)
+    std::ifstream(beside + "-journal", std::ios::binary)
+        .seekg(-8, std::ios::end)
+        .read(end.data(), 8);
+  const bool is_ours =
+      journal == fs::file_type::regular && end != "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";
+  if (!is_ours && journal != fs::file_type::not_found) return "has a -journal of another program";
+  const bool is_wal = byte(18) == 2 || byte(19) == 2;
+  if (is_wal || fs::exists(fs::symlink_status(beside + "-wal", error)))
+    return "is in WAL mode, or has a -wal beside it: another program has written to it";
+  return "";
 }
 
 /// Whether its tables are those that this program makes, word by word.
@@ -346,7 +360,7 @@ Database::Database(const std::string& path, Mode mode) {
   std::string options;
   // A finished file can be read where nothing can be written, not even a lock.
   const std::string folder = std::filesystem::absolute(path).parent_path().string();
-  if (!writes && access(folder.c_str(), W_OK) != 0 && !std::filesystem::exists(path + "-wal"))
+  if (!writes && access(folder.c_str(), W_OK) != 0 && !std::filesystem::exists(path + "-journal"))
     options = "?immutable=1";
   if (writes && !std::filesystem::exists(path) && access(folder.c_str(), W_OK) != 0)
     throw DatabaseError(std::string("its folder cannot be written: ") + std::strerror(errno));
@@ -457,21 +471,33 @@ Database OpenToWrite(const std::string& path) {
 
 Database OpenToRead(const std::string& path) {
   if (const std::string why = WhyNotEpisodes(path); !why.empty()) throw DatabaseError(why);
-  std::error_code error;
-  if (fs::exists(path + "-journal", error)) {
-    // A program that wrote to it is at it, or was killed: then SQLite undoes what was half written.
+  const auto opened = [](const std::string& file, Database::Mode mode) {
+    Database database(file, mode);
+    RefuseOthers(database);
+    return database;
+  };
+  try {
+    return opened(path, Database::Mode::kRead);
+  } catch (const HalfWritten&) {
+    // Who reads changes nothing: SQLite undoes the half in a copy, which is gone when it is closed.
+    const std::string whole = fs::weakly_canonical(path).string();
+    const TemporaryFolder folder;
+    if (!folder.problem().empty()) throw DatabaseError(folder.problem());
+    const std::string copy = (folder.path() / "copy").string();
     try {
-      const Database mended(path, Database::Mode::kWrite);
-      (void)mended.Number("SELECT count(*) FROM sqlite_master");
-    } catch (const DatabaseError&) {
-      throw DatabaseError(
-          "was being written when its program was killed, and cannot be mended "
-          "where it cannot be written: copy it with its -journal file");
+      const auto written = fs::last_write_time(whole);
+      for (const char* end : {"-journal", ""}) fs::copy_file(whole + end, copy + end);
+      fs::permissions(copy, fs::perms::owner_read | fs::perms::owner_write);
+      if (fs::last_write_time(whole) == written) return opened(copy, Database::Mode::kWrite);
+    } catch (const fs::filesystem_error& error) {
+      if (fs::exists(whole + "-journal"))
+        throw DatabaseError(
+            "the program that wrote to it was killed, and there is no copy in which the half that "
+            "it wrote is undone: " +
+            error.code().message());
     }
+    return OpenToRead(path);  // a writer has come meanwhile, and has undone it
   }
-  Database database(path, Database::Mode::kRead);
-  RefuseOthers(database);
-  return database;
 }
 
 std::string NewUuid() {

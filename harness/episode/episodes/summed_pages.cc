@@ -93,9 +93,10 @@ auto Pass(sqlite3_file* file, Arguments... arguments) {
 
 using Methods = sqlite3_io_methods;
 
-/// Files are not mapped into memory, where nobody sees what is read: the version is below 3.
+/// Files are not mapped into memory, where nobody sees what is read, and have no -wal and -shm
+/// beside them: both need a higher version.
 constexpr Methods kMethods = {
-    .iVersion = 2,
+    .iVersion = 1,
     .xClose = Pass<&Methods::xClose>,
     .xRead = Read,
     .xWrite = Write,
@@ -108,12 +109,6 @@ constexpr Methods kMethods = {
     .xFileControl = Pass<&Methods::xFileControl, int, void*>,
     .xSectorSize = Pass<&Methods::xSectorSize>,
     .xDeviceCharacteristics = Pass<&Methods::xDeviceCharacteristics>,
-    .xShmMap = Pass<&Methods::xShmMap, int, int, int, void volatile**>,
-    .xShmLock = Pass<&Methods::xShmLock, int, int, int>,
-    .xShmBarrier = Pass<&Methods::xShmBarrier>,
-    .xShmUnmap = Pass<&Methods::xShmUnmap, int>,
-    .xFetch = nullptr,
-    .xUnfetch = nullptr,
 };
 
 sqlite3_vfs* SystemBelow(sqlite3_vfs* system) {

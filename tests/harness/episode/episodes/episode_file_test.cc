@@ -382,6 +382,79 @@ TEST(EpisodeFileOfMany, AnAlteredFileIsMergedByNameOrRefused) {
   EXPECT_FALSE(fs::exists(out));
 }
 
+/// Every file of a folder: name -> bytes.
+std::map<std::string, std::string> Contents(const fs::path& folder) {
+  std::map<std::string, std::string> all;
+  for (const auto& file : fs::directory_iterator(folder)) all[file.path()] = Slurped(file.path());
+  return all;
+}
+
+TEST(EpisodeFileOfMany, WhoReadsChangesNothingBesideAJournal) {
+  const fs::path folder = Fresh("half"), file = folder / "a.episodes",
+                 killed = folder / "killed/k.episodes", beside = killed.string() + "-journal";
+  ASSERT_EQ(Record(file.string()).problem, "");
+  fs::create_directories(killed.parent_path());
+  const std::string whole = Slurped(file);
+  {
+    const Database writer = OpenToWrite(file);
+    const Transaction transaction(writer);
+    writer.Execute(
+        "UPDATE task SET shows = 'half'; INSERT INTO part SELECT NULL, episode, part + 1000, "
+        "first_tick, data FROM part");
+    writer.Execute("PRAGMA cache_spill=1; PRAGMA cache_size=1; UPDATE event SET event = 'half'");
+    fs::copy_file(file, killed);  // as if it were killed here
+    fs::copy_file(file.string() + "-journal", beside);
+  }
+  ASSERT_NE(Slurped(killed), whole) << "nothing was written yet";
+  const auto before = Contents(killed.parent_path());
+  const auto half = [](const Database& database) {
+    return database.Number("SELECT count(*) FROM event WHERE event = 'half'") +
+           database.Number("SELECT count(*) FROM part WHERE part >= 1000");
+  };
+  EXPECT_EQ(half(OpenToRead(killed)), 0);
+  fs::permissions(killed, fs::perms::owner_read);
+  const auto opened = EpisodeFile::Open(killed);
+  ASSERT_TRUE(opened) << MessageOf(opened);
+  EXPECT_EQ(Contents(killed.parent_path()), before);
+  // Of a stranger: it says that the file has one page.
+  Spill(beside, before.at(beside).substr(0, 16) + std::string("\0\0\0\1", 4) +
+                    before.at(beside).substr(20, 492));
+  const auto shortened = Contents(killed.parent_path());
+  EXPECT_NE(MessageOf(EpisodeFile::Open(killed)), "");
+  EXPECT_EQ(Contents(killed.parent_path()), shortened);
+  // Who merges over it, or writes to it, undoes it.
+  Spill(beside, before.at(beside));
+  fs::permissions(killed, fs::perms::owner_all);
+  const std::string input = file.string();
+  const auto merged = MergeEpisodes({&input, 1}, killed);
+  ASSERT_TRUE(merged) << grammar::Format(merged.error());
+  EXPECT_FALSE(fs::exists(beside)) << "it would undo the new file";
+  Spill(killed, before.at(killed));
+  Spill(beside, before.at(beside));
+  EXPECT_EQ(half(OpenToWrite(killed)), 0);
+  EXPECT_FALSE(fs::exists(beside));
+}
+
+TEST(EpisodeFileOfMany, NothingIsMadeBesideAFileInWalMode) {
+  const fs::path folder = Fresh("wal"), file = folder / "a.episodes";
+  ASSERT_EQ(Record(file.string()).problem, "");
+  const std::string why =
+      "is in WAL mode, or has a -wal beside it: another program has written to it";
+  const std::string good = Slurped(file);
+  Spill(folder / "a.episodes-wal", "");
+  auto before = Contents(folder);
+  EXPECT_EQ(MessageOf(EpisodeFile::Open(file)), why);
+  EXPECT_EQ(Contents(folder), before);
+  fs::remove(folder / "a.episodes-wal");
+  std::string wal = good;
+  wal[18] = wal[19] = 2;
+  Spill(file, wal);
+  before = Contents(folder);
+  EXPECT_EQ(MessageOf(EpisodeFile::Open(file)), why);
+  EXPECT_EQ(Record(file).problem, file.string() + ": " + why);
+  EXPECT_EQ(Contents(folder), before);
+}
+
 TEST(EpisodeFileOfMany, EveryDamagedByteIsReportedOrHarmless) {
   const fs::path folder = Fresh("flipped");
   const fs::path good = folder / "a.episodes";
