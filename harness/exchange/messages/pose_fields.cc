@@ -397,6 +397,7 @@ std::shared_ptr<const MessageReader> MessageReaders::Make(const LogChannel& chan
   why = fmt::format("{} ({})", type.empty() ? "no schema" : ReadableName(type),
                     ReadableName(encoding));
   if (IsOfFrames(channel)) reader->bodies_ = MessageReader::Bodies::kFrames;
+  reader->is_drawn_ = type.starts_with("visualization_msgs/");
   if (encoding == "json") {
     const auto known = JsonContents().find(type);
     const JsonContent content =

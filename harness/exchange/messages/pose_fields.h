@@ -160,6 +160,8 @@ class MessageReader {
   };
 
   Bodies bodies() const { return bodies_; }
+  /// What viewers draw, as our exports tell them to: whose poses are no bodies that were forgotten.
+  bool is_drawn() const { return is_drawn_; }
   /// Where its messages have poses; of kByName none.
   const std::vector<PoseField>& fields() const { return *fields_; }
   /// Appends a message's poses: all of `wanted` fields, some of the others. Returns what is wrong
@@ -174,6 +176,7 @@ class MessageReader {
     bool ros1 = false;
   };
   Bodies bodies_ = Bodies::kOfTopic;
+  bool is_drawn_ = false;
   const std::vector<PoseField>* fields_ = nullptr;
   std::variant<JsonContent, Binary> how_;
 };

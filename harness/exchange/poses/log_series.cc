@@ -84,7 +84,7 @@ std::string FrameName(std::string name) {
 
 std::vector<std::string> LogTopic::Names(const std::string& topic, bool unasked_only) const {
   std::vector<std::string> names;
-  if (!reader) return names;
+  if (!reader || (unasked_only && reader->is_drawn())) return names;
   const std::vector<PoseField>& fields = reader->fields();
   const bool has_poses = std::ranges::find(fields, true, &PoseField::oriented) != fields.end();
   for (const auto& [field, keys] : seen) {
