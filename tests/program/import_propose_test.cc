@@ -330,6 +330,30 @@ TEST(ImportPropose, MarkersOfOneBodyAreNoThingsOnAPlane) {
   EXPECT_EQ(said.out.find(" rest"), said.out.find(" rests\n")) << said.out;  // the guessed table
 }
 
+// A lost cup is all zeros, its orientation, too, in 30 of 150 frames.
+TEST(ImportPropose, ZerosOfALostBodyAreNoPose) {
+  std::string csv =
+      "time,cup_x,cup_y,cup_z,cup_qx,cup_qy,cup_qz,cup_qw,"
+      "hand_x,hand_y,hand_z,hand_qx,hand_qy,hand_qz,hand_qw\n";
+  for (int i = 0; i < 150; ++i)
+    csv += std::to_string(i / 30.0) +
+           (i >= 60 && i < 90 ? ",0,0,0,0,0,0,0" : ",0.2,0.3,0.8,0,0,0,1") + "," +
+           std::to_string(0.2 + 0.3 * std::sin(i / 30.0)) + ",0.3,0.9,0,0,0,1\n";
+  const auto folder = FreshFolder("propose");
+  const std::string map = Proposed(folder, "a.csv", csv);
+  EXPECT_NE(
+      map.find("zero_is_missing: true   # 30 poses at exactly 0, 0, 0, which count as lost\n"),
+      std::string::npos)
+      << map;
+  // What is no orientation anywhere else stays an error.
+  std::string wrong = csv;
+  wrong.replace(wrong.find(",0.2,0.3,0.8,0,0,0,1"), 20, ",0.2,0.3,0.8,0,0,0,0");
+  WriteFile(folder / "b.csv", wrong);
+  const Said said = Prehend({"import", (folder / "b.csv").string(), "--propose"});
+  EXPECT_EQ(said.exit_code, 2) << said.out;
+  EXPECT_NE(said.err.find("b.csv:2:"), std::string::npos) << said.err;
+}
+
 TEST(ImportPropose, LandmarksOfAHandAreOneHand) {
   std::string csv = "time,hand,landmark,x,y,z\n";
   for (int i = 0; i < 90; ++i) {

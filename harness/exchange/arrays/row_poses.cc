@@ -230,7 +230,7 @@ class RowPoseReader {
       return "";
     }
     sample.p = {numbers[0], numbers[1], numbers[2]};
-    if (map_.zero_is_missing && sample.p.isZero(0)) return "-";
+    if (map_.zero_is_missing && sample.p.isZero(0)) return ++poses_.zeros, "-";
     if (numbers.size() == 7) turn = numbers.subspan(3);
     if (turn.empty()) return "";
     // Angles are about x, y and z; they are turned by in another order.

@@ -15,6 +15,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
 
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/arrays/read_array_poses.h"
@@ -84,11 +85,18 @@ class MapProposer {
     const grammar::Diagnostics why = has_rows ? TakeRows() : FindBodies();
     if (!why.empty()) return tl::unexpected(why);
     // What is guessed of how they move asks for the next guess: the unit, then the axes.
-    for (int guesses = 0; guesses < 4; ++guesses) {
+    for (int guesses = 0; guesses < 6; ++guesses) {
       PREHEND_TRY(MapFile map, Read());
       map.map.is_draft = true;
-      PREHEND_TRY(PoseFile poses, ReadPoses(path_, format_, map));
-      if (!Improve(poses, map.map)) break;
+      Result<PoseFile> poses = ReadPoses(path_, format_, map);
+      // What is no number, or no orientation, is tried as not tracked.
+      if (!poses && !nans_ && Format(poses.error()).find("missing: [nan]") != std::string::npos) {
+        nans_ = true;
+        continue;
+      }
+      if (!poses && !std::exchange(zeros_, true)) continue;
+      if (!poses) return tl::unexpected(std::move(poses.error()));
+      if (!Improve(*poses, map.map)) break;
     }
     Try();
     return MapText(true);
@@ -372,6 +380,7 @@ class MapProposer {
     if (!map) return;
     Result<PoseFile> poses = ReadPoses(path_, format_, *map);
     if (!poses) return;
+    zero_count_ = poses->zeros;
     const Result<Imported> imported = ImportPoses(std::move(*poses), *map);
     if (!imported) {
       for (const grammar::Diagnostic& error : imported.error())
@@ -410,7 +419,12 @@ class MapProposer {
     if (!order_.empty()) text += "quaternion_order: " + order_ + "\n";
     if (needs_rate_) text += Key("rate_hz: 30", "fill in: nothing in the file says it");
     text += keys_ + ColumnsText();
-    if (zeros_) text += Key("zero_is_missing: true", "bodies jump to exactly 0, 0, 0");
+    if (nans_) text += Key("missing: [nan]", "some poses are no numbers");
+    if (zeros_)
+      text += Key("zero_is_missing: true", zero_count_ == 0
+                                               ? "bodies jump to exactly 0, 0, 0"
+                                               : grammar::CountOf(zero_count_, "pose") +
+                                                     " at exactly 0, 0, 0, which count as lost");
     text += "lost: unknown\nentities:\n";
     for (const Draft& body : bodies_) text += body.Line();
     if (!table_.empty()) text += fmt::format("  {}  # guessed, below what rests\n", table_);
@@ -464,7 +478,8 @@ class MapProposer {
   std::string head_, summary_, table_, order_, keys_;
   std::string unit_ = "unit: m", unit_why_ = "not in the file", axes_ = "axes: z_up",
               axes_why_ = "not in the file";
-  bool says_unit_ = false, needs_rate_ = false, zeros_ = false, hands_ = false,
+  std::size_t zero_count_ = 0;
+  bool says_unit_ = false, needs_rate_ = false, zeros_ = false, nans_ = false, hands_ = false,
        has_markers_ = false;
   std::map<std::string, std::size_t> alike_;  ///< how many names differ by a number in the end
   std::vector<Draft> bodies_;

@@ -295,7 +295,7 @@ std::string LogSeries::TakePose(const LogMessage& message, const MessagePose& po
         "the times of '{}' go back from {:.6f} to {:.6f} s: its clock was set, or "
         "these are two recordings",
         name, InSeconds(link.poses.back().ns), InSeconds(ns));
-  if (pose.missing || (map_.zero_is_missing && pose.p.isZero(0))) return "";
+  if (pose.missing || (map_.zero_is_missing && pose.p.isZero(0) && ++zeros > 0)) return "";
   if (!pose.p.allFinite() || !pose.xyzw.allFinite()) {
     if (nan_is_missing_) return "";
     return fmt::format(

@@ -107,6 +107,7 @@ class LogSeries {
   std::map<std::string, LogTopic> topics;
   std::map<std::string, FrameLink> named;  ///< bodies with names of their own
   FrameTree tree;
+  std::size_t zeros = 0;  ///< as in PoseFile
 
  private:
   struct Source {

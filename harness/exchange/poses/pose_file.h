@@ -64,8 +64,8 @@ struct PoseFile {
   double most_angle = 0;         ///< of angles and axes times angles, as they are in the file
   bool has_orientations = true;  ///< else only positions
   bool counts_frames = false;    ///< its times, in a unit of time, are whole and grow by one each
-  std::size_t rows = 0;
-  double first_s = 0, last_s = 0;  ///< of all rows, also of those in which nothing is tracked
+  std::size_t rows = 0, zeros = 0;  ///< zeros: poses at 0, 0, 0, which the map says are none
+  double first_s = 0, last_s = 0;   ///< of all rows, also of those in which nothing is tracked
 };
 
 /// The bodies of the map, without poses. One that is two entities is an error.

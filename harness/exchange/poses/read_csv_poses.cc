@@ -491,7 +491,7 @@ class CsvPoseReader {
       values_.push_back(*value);
     }
     PoseSample sample{.t_s = t_s, .p = {values_[0], values_[1], values_[2]}, .line = line_};
-    if (map_.zero_is_missing && sample.p.isZero(0)) return;
+    if (map_.zero_is_missing && sample.p.isZero(0)) return void(++poses.zeros);
     if (!body.samples.empty() && t_s <= body.samples.back().t_s)
       return Complain({line_, cells[seats.all.back()].column},
                       fmt::format("'{}' has two poses at {:.6g} s", body.name, t_s));

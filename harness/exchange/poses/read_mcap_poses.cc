@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <set>
 
 #include "grammar/base/diagnostic.h"
+#include "harness/base/base/input_files.h"
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/messages/log_file.h"
 #include "harness/exchange/poses/log_series.h"
@@ -24,8 +24,7 @@ namespace {
 constexpr double kMostDuration_s = 1e5;
 constexpr std::size_t kMostDeep = 200;  ///< frames in frames
 constexpr std::ptrdiff_t kMostNamed = 4;
-constexpr std::size_t kMostTopics = 20;  ///< that an error names
-constexpr std::size_t kMostListed = 20;  ///< bodies in a line
+constexpr std::size_t kMostTopics = 20, kMostListed = 20;  ///< in an error; bodies in a line
 constexpr const char* kReadTypes =
     "read are messages of ROS with a definition in which there is a pose, as CDR or ROS 1; "
     "PoseStamped, PoseArray, TransformStamped and TFMessage of ROS, and PoseInFrame, PosesInFrame, "
@@ -56,7 +55,7 @@ class McapPoseReader {
     const auto size = std::filesystem::file_size(poses.file, error);
     if (error || !std::filesystem::is_regular_file(poses.file))
       return Fail(std::filesystem::exists(poses.file) ? "is not a regular file" : "no such file");
-    std::ifstream in(poses.file, std::ios::binary);
+    std::ifstream in = OpenInput(poses.file);
     LogSeries series(map_, size);
     series_ = &series;
     const TakesMessage take = [&](const LogMessage& message) {
@@ -67,7 +66,7 @@ class McapPoseReader {
                             : IsBag(poses.file) ? ReadBag(in, size, take, tell)
                                                 : ReadMcap(in, size, take, tell);
     if (!why.empty()) return Fail(why);
-    poses.quaternion_order = series.quaternion_order();
+    poses.quaternion_order = series.quaternion_order(), poses.zeros = series.zeros;
     if (map_errors_.empty()) FindBodies();
     if (map_errors_.empty()) Compose();
     if (map_errors_.empty() && problems_.empty()) RefuseAbsentBodies(poses, map_, map_errors_);
