@@ -148,6 +148,63 @@ def check_gaps(folder):
     assert np.isnan(np.load(folder / "gaps.npz")["position_m"][80, 1]).all()
 
 
+def check_not_tracked(folder):
+    """What is lost, seen late, or vanishes, beside a drawer: the same events from every format, by the same grammar."""
+    def take(name, unseen, grammar="pick_and_place_from_motion", moves=True):
+        table, kinds = {"class": "Table", "fixed": True, "size_m": [2, 2, 0.04]}, []
+        lines = [{"recording": 1, "episode": name, "grammar": grammar, "ticks_per_second": 1000, "entities": {
+            "table": table, "cup": {"class": "Cup", "size_m": [0.08, 0.08, 0.1]},
+            "drawer": {"class": "Drawer", "jointed": True, "size_m": [0.3, 0.3, 0.1]},
+            "right_hand": {"hand": True, "size_m": [0.09, 0.08, 0.03]}}}]
+        for k in range(240):
+            t = k / 40
+            along = 0.5 * (1 - np.cos(np.pi * np.clip((t - 2) / 2, 0, 1))) if moves else 0
+            cup = [0.4 * along, 0, 0.77 + 0.15 * np.sin(np.pi * along)]
+            off = 0.3 * (1 - np.clip(t - 0.5, 0, 1) + np.clip(t - 4.5, 0, 1)) if moves else 0.3
+            pulled = 0.2 * np.clip(t - 4, 0, 1) if moves else 0
+            at = {"table": {"at_m": [0, 0, 0.7]}, "cup": {"at_m": cup}, "right_hand": {"at_m": [cup[0] - off - 0.06, 0, cup[2]]},
+                  "drawer": {"at_m": [0.6 - pulled, 0.5, 0.77], "joint_position": pulled, "joint_fraction": pulled / 0.25}}
+            for entity, (begin, end) in unseen.items():
+                if begin <= t < end:
+                    at[entity] = None
+            lines.append({"tick": 25 * k, "samples": at, "hands": {"right_hand": {"trigger": float(off < 0.01)}}})
+        file = folder / f"{name}.jsonl"
+        file.write_text("\n".join(json.dumps(line) for line in lines + [{"end_tick": 5976}]), encoding="utf-8")
+        return file, grammar
+    events = 0
+    for file, grammar in (take("seen", {}), take("lost", {"cup": (2.6, 3.4)}), take("late", {"cup": (0, 1.5)}), take("gone", {"cup": (5, 9)}),
+                          take("hand", {"right_hand": (2.5, 3.5)}), take("drawer", {"drawer": (4.2, 4.9)}),
+                          take("all", {"cup": (0, 0.5), "right_hand": (4.6, 9), "drawer": (0, 3)}, "contact_from_motion"),
+                          take("still", {"cup": (1, 2), "right_hand": (3, 9)}, moves=False)):
+        truth = resegmented(file)
+        events += len(truth)
+        for form in ("jsonl", "csv", "npz", "mcap"):
+            made = folder / f"{file.stem}_out.{form}"
+            said("episode", "export", file, "--to", form, "-o", made)
+            if form != "jsonl":
+                text = pathlib.Path(f"{made}.map.yaml").read_text(encoding="utf-8")
+                assert re.findall(r"^  (.*?): {.*joint: ", text, re.M) == ['"drawer"'] and f"\ngrammar: {grammar}\n" in text, text
+                back = folder / "back.jsonl"
+                run = subprocess.run([prehend, "import", made, "--map", f"{made}.map.yaml", "-o", back], capture_output=True, text=True, check=False)
+                assert run.returncode == 0 and "does not mention" not in run.stderr, (file, form, run.stderr)
+                made = back
+            assert resegmented(made) == truth, (file, form, truth, resegmented(made))
+    assert events > 40, events
+    # Rare frames: what they do not mention is as it was, also to the end.
+    rare = folder / "rare.jsonl"
+    lines = take("rare", {"cup": (1, 2)}, moves=False)[0].read_text(encoding="utf-8").splitlines()
+    rare.write_text("\n".join(line for k, line in enumerate(lines) if k < 20 or k in (50, 90, 91, 92, 170, 241)), encoding="utf-8")
+    for form in ("csv", "npz", "mcap"):
+        said("episode", "export", rare, "--to", form, "-o", folder / f"rare.{form}")
+        said("import", folder / f"rare.{form}", "--map", folder / f"rare.{form}.map.yaml", "-o", folder / "back.jsonl")
+        assert resegmented(folder / "back.jsonl") == resegmented(rare), form
+    # What the map cannot say is a comment.
+    (folder / "own.grammar").write_text("grammar own\nuse contact from motion\n", encoding="utf-8")
+    said("episode", "export", rare, "--to", "csv", "-o", folder / "r.csv", "--grammar", folder / "own.grammar")
+    text = (folder / "r.csv.map.yaml").read_text(encoding="utf-8")
+    assert f"\n# not said here: its events are those of {folder}/own.grammar\n" in text and "\ngrammar:" not in text, text
+
+
 def openings_of(lines):
     """(tick, grip of each hand, position and fraction of each joint), where they are not 0 all the time."""
     hands, joints, rows = {}, {}, []
@@ -197,6 +254,7 @@ def main():
         folder = pathlib.Path(where)
         check_uuids(folder)
         check_gaps(folder)
+        check_not_tracked(folder)
         check_openings(folder)
         events = 0
         for file in chosen:

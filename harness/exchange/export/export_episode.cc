@@ -15,6 +15,7 @@
 #include "grammar/base/frame.h"
 #include "grammar/contents.h"
 #include "harness/base/base/atomic_file.h"
+#include "harness/base/base/median.h"
 #include "harness/base/base/quoting.h"
 #include "harness/episode/episode/episode.h"
 #include "harness/episode/episodes/database.h"
@@ -22,6 +23,8 @@
 
 namespace prehend::exchange {
 namespace {
+
+constexpr double kLong = 1.5;  ///< of the usual step: no import takes more for the next one
 
 /// `file` has one of the endings. Returns "", or what could not be written.
 std::string WriteMotion(const Motion& motion, const std::string& file) {
@@ -141,7 +144,6 @@ tl::expected<std::vector<Exported>, episode::NotFound> ExportEpisodes(
         .message = fmt::format("--output: {} is one file, and {} episodes are selected; name a "
                                "folder, or choose one with --episode",
                                request.output, episodes.size())});
-  const bool is_other = !request.choice.grammar.empty() || !request.choice.settings.empty();
   episode::EpisodeOpener opener(request.root);
   std::vector<Exported> all;
   std::map<std::string, int> taken;
@@ -151,9 +153,11 @@ tl::expected<std::vector<Exported>, episode::NotFound> ExportEpisodes(
     if (const int before = taken[name]++; before > 0) name += fmt::format("-{}", before + 1);
     if (request.ending == ".mcap") name += "/" + name;  // a bag is a folder
     Exported one{.file = is_file ? request.output : request.output + "/" + name + request.ending};
-    Result<episode::Episode> episode = opener.Open(named, request.choice);
+    episode::GrammarChoice choice = request.choice;
+    if (choice.grammar.empty()) choice.grammar = named.asked;
+    Result<episode::Episode> episode = opener.Open(named, choice);
     if (!episode) return tl::unexpected(episode::NotFound{.diagnostics = episode.error()});
-    const Result<Motion> motion = Motion::Of(*episode, is_other);
+    const Result<Motion> motion = Motion::Of(*episode, choice);
     if (!motion) return tl::unexpected(episode::NotFound{.diagnostics = motion.error()});
     if (const std::string problem = WriteMotion(*motion, one.file); !problem.empty())
       return tl::unexpected(episode::NotFound{.exit_code = ExitCode::kFailure, .message = problem});
@@ -166,7 +170,8 @@ tl::expected<std::vector<Exported>, episode::NotFound> ExportEpisodes(
   return all;
 }
 
-Result<Motion> Motion::Of(episode::Episode& episode, bool other_grammar) {
+Result<Motion> Motion::Of(episode::Episode& episode, const episode::GrammarChoice& choice) {
+  const bool other_grammar = !choice.grammar.empty() || !choice.settings.empty();
   Motion motion(episode);
   std::string uuid;
   if (episode.row()) uuid = episode.row()->uuid;
@@ -182,25 +187,35 @@ Result<Motion> Motion::Of(episode::Episode& episode, bool other_grammar) {
   for (std::size_t i = 0; i < motion.timeline.events.size(); ++i)
     motion.uuids.push_back(episode::UuidOfEvent(uuid, i));
   motion.LookAtAll();
+  motion.judged_by = choice.grammar.empty() ? motion.header.grammar : choice.grammar;
+  if (motion.judged_by.find_first_of("./") == std::string::npos)
+    motion.header.grammar = motion.judged_by;
+  motion.settings = choice.settings;
+  motion.was_simulated = episode.was_simulated();
   return motion;
 }
 
 void Motion::LookAtAll() {
   header = episode_->Header();
+  bridge_s = header.bridge_s;
   if (const episode::Recording* recording = episode_->recording()) {
     says_its_end = recording->says_its_end;
     // Looks that were missing for a short time stand in the frames, and count as they are.
     const auto has_gaps = [](const episode::LookGaps& gaps) { return gaps.gaps > 0; };
     if (std::ranges::any_of(recording->gaps, has_gaps)) header.bridge_s = 0;
   }
-  seen.resize(table().entities.size());
+  for (const grammar::EntityInfo& entity : table().entities)
+    seen.push_back({.has_joint = std::ranges::count(entity.classes, "Jointed") > 0});
+  std::vector<grammar::Tick> steps;
+  grammar::Tick last = 0;
   const episode::Episode::End end = episode_->EachFrame([&](const grammar::Frame& frame) {
-    ++frames;
+    if (frames++ > 0) steps.push_back(frame.tick - last);
+    last = frame.tick;
     for (std::size_t i = 0; i < frame.entities.size(); ++i) {
       const grammar::EntitySample& look = frame.entities[i];
       Seen& of = seen[i];
-      of.has_joint = of.has_joint || look.joint_position != 0 || look.joint_fraction != 0;
       if (!grammar::IsTracked(look)) continue;
+      of.has_joint = of.has_joint || look.joint_position != 0 || look.joint_fraction != 0;
       if (of.looks++ == 0) of.first = of.shut = of.open = look;
       if (look.joint_fraction < of.shut.joint_fraction) of.shut = look;
       if (look.joint_fraction > of.open.joint_fraction) of.open = look;
@@ -217,6 +232,43 @@ void Motion::LookAtAll() {
   });
   end_tick = end.tick;
   failure = end.failure;
+  JudgeSteps(std::move(steps), end_tick - last);
+}
+
+void Motion::JudgeSteps(std::vector<grammar::Tick> steps, grammar::Tick to_end) {
+  const double ticks_per_s = static_cast<double>(table().ticks_per_second),
+               bridge = bridge_s * ticks_per_s;
+  const grammar::Tick usual = Median(steps);
+  steps.push_back(to_end);
+  double bridged = 0;
+  for (const grammar::Tick step : steps) {
+    const auto ticks = static_cast<double>(step);
+    if (ticks <= kLong * static_cast<double>(usual)) continue;
+    if (ticks <= bridge)
+      bridged = std::max(bridged, ticks);
+    else
+      row_ticks_ = usual;
+  }
+  if (header.bridge_s == 0) bridge_s = bridged / ticks_per_s;
+}
+
+void Motion::EachRow(const Look& look) const {
+  if (row_ticks_ == 0) return EachFrame(look);
+  grammar::Tick tick = 0;
+  std::vector<grammar::EntitySample> entities;
+  std::vector<grammar::HandSample> hands;
+  const auto repeat = [&](grammar::Tick end) {
+    while (!entities.empty() && tick + row_ticks_ < end)
+      look({.tick = tick += row_ticks_, .entities = entities, .hands = hands, .touches = {}});
+  };
+  EachFrame([&](const grammar::Frame& frame) {
+    repeat(frame.tick);
+    look(frame);
+    tick = frame.tick;
+    entities.assign(frame.entities.begin(), frame.entities.end());
+    hands.assign(frame.hands.begin(), frame.hands.end());
+  });
+  repeat(end_tick);
 }
 
 void Motion::EachFrame(const Look& look) const { episode_->EachFrame(look); }
@@ -237,7 +289,7 @@ void WriteCsv(const Motion& motion, std::ostream& out) {
   for (const grammar::EntityInfo& entity : motion.table().entities)
     names.push_back(AsCsvCell(entity.name));
   std::vector<std::string> grips(names.size());
-  motion.EachFrame([&](const grammar::Frame& frame) {
+  motion.EachRow([&](const grammar::Frame& frame) {
     for (const grammar::HandSample& hand : frame.hands)
       grips[hand.entity] = fmt::to_string(hand.trigger);
     const std::string t = truth::SecondsText(frame.tick, motion.table().ticks_per_second);
@@ -245,11 +297,11 @@ void WriteCsv(const Motion& motion, std::ostream& out) {
       const grammar::EntitySample& look = frame.entities[i];
       const Eigen::Vector3d& p = look.p_WB_m;
       const Eigen::Quaterniond& q = look.q_WB;
-      const std::string pose =
-          grammar::IsTracked(look)
-              ? fmt::format("{},{},{},{},{},{},{}", p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z())
-              : ",,,,,,";
-      const std::string joint = motion.seen[i].has_joint
+      const bool known = grammar::IsTracked(look);
+      const std::string pose = known ? fmt::format("{},{},{},{},{},{},{}", p.x(), p.y(), p.z(),
+                                                   q.w(), q.x(), q.y(), q.z())
+                                     : ",,,,,,";
+      const std::string joint = known && motion.seen[i].has_joint
                                     ? fmt::format("{},{}", look.joint_position, look.joint_fraction)
                                     : ",";
       out << t << ',' << names[i] << ',' << pose << ',' << grips[i] << ',' << joint << '\n';
@@ -290,6 +342,21 @@ std::string EventsCsv(const Motion& motion) {
   return text + "\n";
 }
 
+/// `grammar` of a map, which is that of what `import` makes; or what it cannot say.
+std::string GrammarOf(const Motion& motion) {
+  const std::string& name = motion.judged_by;
+  const auto is_letter = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
+  const bool fits = !motion.was_simulated && std::ranges::all_of(name, is_letter);
+  std::string text = fits ? "grammar: " + name + "\n" : "";
+  if (fits && motion.settings.empty()) return text;
+  return text +
+         fmt::format("# not said here: its events are those of {}{}{}\n", name,
+                     motion.settings.empty()
+                         ? ""
+                         : fmt::format(" with --set {}", fmt::join(motion.settings, " --set ")),
+                     motion.was_simulated ? ", of all that was simulated" : "");
+}
+
 std::string MapText(const Motion& motion, const std::string& ending) {
   const auto quoted = [](const std::string& text) { return nlohmann::json(text).dump(); };
   grammar::Tick ticks_per_second = motion.table().ticks_per_second;
@@ -298,7 +365,7 @@ std::string MapText(const Motion& motion, const std::string& ending) {
       "# prehend import FILE --map THIS -o take.jsonl; time 0 is that of the first frame.\n"
       "import: 1\nepisode: {}\nunit: m\naxes: z_up\nticks_per_second: {}\nlost: unknown\n"
       "bridge_s: {}\nsure: [unit, axes, quaternion_order, time, place, zero, upright, handed]\n",
-      quoted(motion.header.episode), ticks_per_second, motion.header.bridge_s);
+      quoted(motion.header.episode), ticks_per_second, motion.bridge_s);
   if (ending == ".csv")
     text +=
         "quaternion_order: wxyz\ntime_unit: s\n"
@@ -308,7 +375,7 @@ std::string MapText(const Motion& motion, const std::string& ending) {
     text += "quaternion_order: wxyz\nt: t_s\ntime_unit: s\nmissing: [nan]\n";
   else
     text += "mcap: {clock: log, world: " + quoted(WorldName(motion.table())) + "}\n";
-  text += "entities:\n";
+  text += GrammarOf(motion) + "entities:\n";
   for (std::size_t i = 0; i < motion.seen.size(); ++i) {
     const grammar::EntityInfo& entity = motion.table().entities[i];
     if (!IsTrackerBody(entity) || motion.seen[i].looks < 2) continue;
@@ -348,7 +415,7 @@ void WriteNpz(const Motion& motion, std::ostream& out) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const std::size_t count = motion.seen.size();
   std::vector<double> t, p, q, grip, joint, begin, end;
-  motion.EachFrame([&](const grammar::Frame& frame) {
+  motion.EachRow([&](const grammar::Frame& frame) {
     t.push_back(motion.Seconds(frame.tick));
     for (const grammar::EntitySample& look : frame.entities) {
       const bool known = grammar::IsTracked(look);

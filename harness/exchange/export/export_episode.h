@@ -42,11 +42,14 @@ tl::expected<std::vector<Exported>, episode::NotFound> ExportEpisodes(
 
 class Motion {
  public:
-  /// Plays a scenario. `other_grammar`: its events count, not those that were recorded.
-  static Result<Motion> Of(episode::Episode& episode, bool other_grammar);
+  /// Plays a scenario. The episode was opened with `choice`; if that says something, what it makes
+  /// of the episode counts, not what was recorded.
+  static Result<Motion> Of(episode::Episode& episode, const episode::GrammarChoice& choice);
 
   using Look = std::function<void(const grammar::Frame&)>;
   void EachFrame(const Look& look) const;
+  /// The same, and where frames are rare the last one again: a table says what it mentions only.
+  void EachRow(const Look& look) const;
 
   const grammar::EntityTable& table() const { return header.entity_table; }
   double Seconds(grammar::Tick tick) const {
@@ -61,13 +64,17 @@ class Motion {
   std::size_t frames = 0;
   grammar::Tick end_tick = 0;
   bool says_its_end = true;
+  double bridge_s = 0;                ///< for how long a table, where it has no row, counts
+  std::string judged_by;              ///< a grammar's name or file
+  std::vector<std::string> settings;  ///< of its parameters
+  bool was_simulated = false;
   std::string failure;  ///< "", or why its simulation ended early
 
   /// What is known of an entity from all frames.
   struct Seen {
     std::size_t looks = 0;  ///< frames in which it is tracked
     bool moves = false;
-    bool has_joint = false;                  ///< it is somewhere else than at 0
+    bool has_joint = false;                  ///< by its class, or somewhere else than at 0
     grammar::EntitySample first;             ///< look
     grammar::EntitySample shut, open;        ///< of a joint: the least and the most open look
     double most_grip = 0;                    ///< of a hand
@@ -78,7 +85,10 @@ class Motion {
  private:
   explicit Motion(episode::Episode& episode) : episode_(&episode) {}
   void LookAtAll();
+  /// `steps`: from frame to frame.
+  void JudgeSteps(std::vector<grammar::Tick> steps, grammar::Tick to_end);
   episode::Episode* episode_;
+  grammar::Tick row_ticks_ = 0;  ///< between two rows where frames are rare; 0: they are not
 };
 
 // Motion in the formats of other programs (docs/episodes.md).

@@ -444,10 +444,14 @@ std::string WriteMcap(const Motion& motion, const std::string& name, std::ostrea
         topic(TopicOf(entity.name, outlines.size()), "sensor_msgs/msg/PointCloud2", true));
   const std::string world = WorldName(table);
   std::vector<FramePose> frames;
+  // The rest are seen by the clock of what moves all the time.
+  const bool has_clock = std::ranges::any_of(motion.seen, [&](const Motion::Seen& seen) {
+    return seen.moves && seen.looks == motion.frames;
+  });
   std::vector<bool> stands;
   for (std::size_t i = 0; i < table.entities.size(); ++i) {
     const Motion::Seen& seen = motion.seen[i];
-    stands.push_back(!seen.moves && seen.looks == motion.frames);
+    stands.push_back(has_clock && !seen.moves && seen.looks == motion.frames);
     if (stands[i] && seen.looks > 0)
       frames.push_back({&table.entities[i].name, seen.first.p_WB_m, seen.first.q_WB});
   }
@@ -462,7 +466,7 @@ std::string WriteMcap(const Motion& motion, const std::string& name, std::ostrea
       bag.Message(events, motion.Nanoseconds(edge->first), StringMessage(edge->second));
   };
   std::vector<JointValue> values;
-  motion.EachFrame([&](const grammar::Frame& frame) {
+  motion.EachRow([&](const grammar::Frame& frame) {
     tell_events(frame.tick);
     const std::uint64_t ns = motion.Nanoseconds(frame.tick);
     frames.clear();
@@ -471,7 +475,8 @@ std::string WriteMcap(const Motion& motion, const std::string& name, std::ostrea
       const grammar::EntitySample& look = frame.entities[i];
       if (!stands[i] && grammar::IsTracked(look))
         frames.push_back({&table.entities[i].name, look.p_WB_m, look.q_WB});
-      if (motion.seen[i].has_joint) values.push_back({table.entities[i].name, look.joint_position});
+      if (motion.seen[i].has_joint && grammar::IsTracked(look))
+        values.push_back({table.entities[i].name, look.joint_position});
     }
     for (const grammar::HandSample& hand : frame.hands)
       values.push_back({table.entities[hand.entity].name + "_grip", hand.trigger});

@@ -147,7 +147,6 @@ tl::expected<std::vector<Subtasks>, episode::NotFound> LabelEpisodes(
   episode::EpisodeOpener opener(request.root);
   std::optional<MapFile> map;
   std::vector<Subtasks> all;
-  const bool is_other = !request.choice.grammar.empty() || !request.choice.settings.empty();
   for (const episode::EpisodeName& name : episodes) {
     Result<episode::Episode> episode = opener.Open(name, request.choice);
     if (!episode) return tl::unexpected(episode::NotFound{.diagnostics = episode.error()});
@@ -161,7 +160,7 @@ tl::expected<std::vector<Subtasks>, episode::NotFound> LabelEpisodes(
       if (auto wrong = WrongInLabels(*map, *episode->program()); !wrong.empty())
         return tl::unexpected(episode::NotFound{.diagnostics = std::move(wrong)});
     }
-    const Result<Motion> motion = Motion::Of(*episode, is_other);
+    const Result<Motion> motion = Motion::Of(*episode, request.choice);
     if (!motion) return tl::unexpected(episode::NotFound{.diagnostics = motion.error()});
     all.push_back(FindSubtasks(map->map, *motion));
     all.back().source = source;
