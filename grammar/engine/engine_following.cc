@@ -189,7 +189,13 @@ bool Engine::MayFollow(RuleInstance& instance, FrameNumber resumes) {
   if (const auto* looks_back = RuleOf(instance).If<UntilSinceRule>())
     return is_false(looks_back->until) &&
            (!follows_[instance.rule].by_since || RuledOutUntil(instance) >= resumes);
-  if (const auto* any = instance.If<AnyState>()) return instance.open || any->owner == kNoEntity;
+  if (const auto* any = instance.If<AnyState>()) {
+    const bool shares_out = RuleOf(instance).As<AnyRule>().one != kNone;
+    return instance.open ||
+           (any->owner == kNoEntity && std::ranges::none_of(any->members, [&](InstanceId member) {
+              return shares_out && instances_.TruthAt(member, resumes - 1) != Kleene::kFalse;
+            }));
+  }
   const auto* from_to = RuleOf(instance).If<FromToRule>();
   return from_to == nullptr || instance.open || is_false(from_to->from) ||
          (from_to->during != kNone && AsksOnlyOthers(from_to->during) && is_false(from_to->during));

@@ -133,7 +133,8 @@ bool Engine::StepAny(RuleInstance& instance, FrameNumber frame) {
 // `one hand per object`: who has it keeps it as long as one of its candidates holds. When it is
 // free, the first candidate opens a window of time, and of those that hold at some frame in it, the
 // nearest at its first one gets it from there on. So a decision takes as long as the window, and is
-// never taken back.
+// never taken back. Who is not tracked is not nearer than another; where of several nobody is
+// tracked it stays free, until that changes.
 
 // True if a candidate of the owner holds.
 Kleene Engine::GoesOn(const RuleInstance& owners, FrameNumber frame) const {
@@ -183,12 +184,14 @@ bool Engine::ChooseOwner(RuleInstance& owners, FrameNumber frame) {
   }
   double nearest_m = std::numeric_limits<double>::infinity();
   for (const auto& [who, first] : begins) {
-    const double away_m = evaluator_.AwayFrom_m(who, owners.entities[0], first);
-    if (state.owner != kNoEntity && !(away_m < nearest_m)) continue;
+    const double away_m =
+        begins.size() == 1 ? 0 : evaluator_.AwayFrom_m(who, owners.entities[0], first);
+    if (!(away_m < nearest_m)) continue;
     nearest_m = away_m;
     state.owner = who;
     state.owned_from = first;
   }
+  if (state.owner == kNoEntity) owners.by_itself = true;
   return true;
 }
 

@@ -92,7 +92,8 @@ class Evaluator {
   /// Whether FalseFor_m() may tell something of it.
   bool NeedsNearness(NodeId node) const;
 
-  /// From the origin of `whom` to the surface of `who`, as `nearest` measures it.
+  /// From the origin of `whom` to the surface of `who`, as `nearest` measures it; no number if one
+  /// of them is not tracked.
   double AwayFrom_m(int who, int whom, FrameNumber frame) const;
 
   /// Keeps the values of all anchors of the instance's rule at this frame. False while one is not

@@ -32,6 +32,8 @@ bool Evaluator::IsInside(const Node& node, const View& view) const {
 }
 
 double Evaluator::AwayFrom_m(int who, int whom, FrameNumber frame) const {
+  if (!IsTracked(who, frame) || !IsTracked(whom, frame))
+    return std::numeric_limits<double>::quiet_NaN();
   return DistanceToSurface_m(history_.Look(whom, frame).p_WB_m,
                              entity_table_.entities[static_cast<std::size_t>(who)],
                              history_.Look(who, frame));
@@ -48,7 +50,6 @@ bool Evaluator::IsNearest(const Node& node, const View& view) const {
   const double here_m = away_m(who);
   for (int other = 0; other < static_cast<int>(entity_table_.entities.size()); ++other) {
     if (other == who || other == whom || !instances_.IsA(other, of_class)) continue;
-    if (!IsTracked(other, view.frame)) continue;
     const double there_m = away_m(other);
     if (there_m < here_m || (there_m == here_m && other < who)) return false;
   }

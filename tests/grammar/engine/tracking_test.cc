@@ -165,6 +165,29 @@ TEST(NotTracked, ARuleIsUnknownOutOfSightForThoseWhoAskWhatIsKnown) {
   EXPECT_EQ(Held(from + "while low(cup) requires known not high(cup)\n", {Scene::kCup}), always);
 }
 
+// Cup and tray are where the hand is, the cup first in the cast.
+TEST(NotTracked, WhoIsLostIsNotTheNearest) {
+  const std::string rules =
+      "grammar t\ncondition sees(hand: Hand, cup: Cup) while distance(hand, cup) < 1 m\n"
+      "condition lost(hand: Hand) from sees(hand, any) ends to height(hand) > 5 m begins\n"
+      "condition has(thing: Movable, hand: Hand) while ";
+  const std::string whose = "event e(thing: Movable, hand: Hand) while has(thing, hand) and ";
+  for (const std::string one :
+       {" one thing per hand\n", " one thing per hand, nearest within 50 ms\n"}) {
+    const std::string now = rules + "not sees(hand, any)" + one + whose;
+    EXPECT_EQ(Held(now + "is(thing, Cup)", {Scene::kCup}), "") << one;
+    EXPECT_EQ(Held(now + "not is(thing, Cup)", {Scene::kCup}), "300..500; ") << one;
+    EXPECT_EQ(Held(now + "not is(thing, Dog)", {Scene::kHand}), "") << one;
+    EXPECT_EQ(Held(now + "not is(thing, Dog)", {Scene::kCup, Scene::kTray}), "") << one;
+    const std::string on = rules + "lost(hand)" + one + whose;  // from 300 on
+    EXPECT_EQ(Held(on + "is(thing, Cup)", {Scene::kHand}), "500..1000; ") << one;
+    EXPECT_EQ(Held(on + "not is(thing, Cup)", {Scene::kHand}), "") << one;
+    // Who is alone need not be the nearest.
+    const std::string alone = rules + "lost(hand) and is(thing, Cup)" + one + whose;
+    EXPECT_EQ(Held(alone + "is(thing, Cup)", {Scene::kCup}), "300..1000; ") << one;
+  }
+}
+
 TEST(NotTracked, NothingIsBetweenOnlyIfItIsSeen) {
   const std::string rules =
       "grammar t\ncondition high(cup: Cup) while height(cup) > 5 m\n"

@@ -278,18 +278,19 @@ std::vector<Runs> OnePer(const std::vector<Runs>& candidates,
   std::vector<Stream> own(candidates.size(), Stream(frames, false));
   for (int free = 0; free < frames;) {
     const bool somebody = std::ranges::any_of(hold, [&](const Stream& h) { return h[free]; });
-    std::size_t best = candidates.size();
-    int from = free;
+    std::vector<std::pair<std::size_t, int>> in_time;  // with their first frames
     for (std::size_t c = 0; somebody && c < candidates.size(); ++c) {
       int first = free;
       while (first < frames && ticks[first] - ticks[free] <= within && !hold[c][first]) ++first;
-      const bool in_time = first < frames && ticks[first] - ticks[free] <= within;
-      if (!in_time || (best < candidates.size() && !(away[c][first] < away[best][from]))) continue;
-      best = c;
-      from = first;
+      if (first < frames && ticks[first] - ticks[free] <= within) in_time.emplace_back(c, first);
     }
+    const auto is_lost = [&](const auto& one) { return std::isnan(away[one.first][one.second]); };
+    if (in_time.size() > 1) std::erase_if(in_time, is_lost);
+    ++free;
+    if (in_time.empty()) continue;
+    const auto [best, from] = *std::ranges::min_element(
+        in_time, {}, [&](const auto& one) { return away[one.first][one.second]; });
     free = from + 1;
-    if (!somebody) continue;
     for (int i = from; i < frames && hold[best][i]; free = ++i) own[best][i] = true;
   }
   std::vector<Runs> runs;

@@ -121,7 +121,8 @@ Runs Repeat(Runs runs, const Ticks& ticks, int at_least, Tick gap);
 /// `one .. per ..`: of the runs of several candidates, one at a time. Who has it keeps it as long
 /// as a run of theirs goes on. When it is free, of those who hold at some frame up to `within`
 /// ticks after the first, the nearest at their first one gets it; of equals the first in the list.
-/// `away[c][frame]`: how far candidate c is.
+/// `away[c][frame]`: how far candidate c is, no number if nobody knows; of several, such are left
+/// out, and nobody gets it in a frame where none is left.
 std::vector<Runs> OnePer(const std::vector<Runs>& candidates,
                          const std::vector<std::vector<double>>& away, const Ticks& ticks,
                          Tick within);
