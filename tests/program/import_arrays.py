@@ -238,6 +238,13 @@ def check_npz():
             (whole[:1000], one, "is cut off"), (b"PK\3\4" + whole[4:].replace(b"PK\1\2", b"PK\1\3", 1), one, "at byte"),
             (whole.replace(b"NUMPY", b"NUMPX", 1), one, "checksum"), (b"", one, "is no .npz file"), (b"PK\5\6", one, "")):
         expect_refused("a.npz", content, map_text, *why)
+    # Each array has fewer than the map may ask for, all together have more.
+    many, of = np.zeros((2_000_000, 3)), base + "rate_hz: 60\nentities:\n" + TABLE
+    bodies = [f"  {k}: {{position: %s, class: Thing, size_m: [0.1, 0.1, 0.1]}}\n" for k in "abc"]
+    expect_refused("a.npz", npz(True, a=many, b=many, c=many), of + "".join(b % k for b, k in zip(bodies, "abc")),
+                   "'c', at byte", "more than 16000000 numbers, with the arrays before it")
+    expect_refused("a.npz", npz(True, a=np.zeros((2_000_000, 7))), of + "".join(b % f'"a[{k}:{k + 3}]"' for k, b in enumerate(bodies)),
+                   "'a[2:5]' is too much: the map asks for more than 16000000 numbers")
     return [("a.npz", whole, one), ("a.npz", npz(True, **arrays), one)]
 
 

@@ -13,8 +13,6 @@
 namespace prehend::episode {
 namespace {
 
-constexpr std::size_t kMostAssetBytes = std::size_t{1} << 28;
-
 std::string About(const EpisodeRow& episode) {
   return fmt::format("episode {} ({}): ", episode.id, episode.scenario);
 }
@@ -70,8 +68,9 @@ Result<EpisodeFile> EpisodeFile::Open(const std::string& path) {
         " CASE status WHEN 'recording' THEN coalesce((SELECT max(last_tick) FROM chunk WHERE"
         " chunk.episode = episode.id), 0) ELSE ticks END, state_hash, outcome, recorded_on,"
         " failure_entity, failure_reason, failure_advice, engine"
-        " FROM episode JOIN task ON task.id = episode.task ORDER BY episode.id");
+        " FROM episode LEFT JOIN task ON task.id = episode.task ORDER BY episode.id");
     while (find.Step()) {
+      if (find.IsNothing(2)) throw Damage("an episode has no task");
       EpisodeRow& row = file.episodes_.emplace_back();
       row = {.id = find.Integer(0),
              .uuid = find.Uuid(1),
@@ -91,7 +90,7 @@ Result<EpisodeFile> EpisodeFile::Open(const std::string& path) {
 }
 
 Result<TaskFiles> EpisodeFile::TaskOf(const EpisodeRow& episode) const {
-  return Guarded(path_, [&] {
+  const auto read = [&] {
     TaskFiles task;
     Statement find = database_.Prepare(
         "SELECT file, asked_grammar, settings, task.id FROM task JOIN episode ON"
@@ -106,17 +105,22 @@ Result<TaskFiles> EpisodeFile::TaskOf(const EpisodeRow& episode) const {
       if (setting.is_string()) task.run.settings.push_back(setting);
     }
     Statement assets = database_.Prepare(
-        "SELECT path, hash, content FROM task_asset JOIN asset USING(hash) WHERE task = ?");
+        "SELECT path, hash, content, bytes FROM task_asset JOIN asset USING(hash) WHERE task = "
+        "?");
     assets.Bind(id);
     Compressor compressor;
+    std::size_t all = 0;
     while (assets.Step()) {
-      const auto content = compressor.Unpack(assets.Bytes(2), kMostAssetBytes);
+      const auto bytes = static_cast<std::size_t>(std::max(assets.Integer(3), std::int64_t{0}));
+      CheckTaskBytes(all += bytes);
+      const auto content = compressor.Unpack(assets.Bytes(2), bytes);
       if (!content || ContentHash(*content) != assets.Text(1))
         throw Damage(assets.Text(0) + " is not what it was");
       task.files[assets.Text(0)] = std::string(*content);
     }
     return task;
-  });
+  };
+  return Guarded(path_, read, About(episode));
 }
 
 Result<KeptTask> EpisodeFile::DescribeTaskOf(const EpisodeRow& episode) const {

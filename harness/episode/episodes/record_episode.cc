@@ -2,6 +2,7 @@
 #include "harness/episode/episodes/record_episode.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -260,6 +261,13 @@ tl::expected<WriteLock, std::string> LockToRecord(const std::string& file, Write
   return tl::unexpected(problem);
 }
 
+void CheckTaskBytes(std::size_t bytes) {
+  constexpr std::size_t kMost = std::size_t{1} << 28;
+  if (bytes > kMost)
+    throw DatabaseError(
+        fmt::format("the files of a task have more than {} MiB in all", kMost >> 20));
+}
+
 std::int64_t WriteTask(const Database& database, const NewTask& task) {
   const TaskFiles& files = task.files;
   const std::string uuid = UuidOf(task.scenario + "\n" + files.Identity());
@@ -275,7 +283,9 @@ std::int64_t WriteTask(const Database& database, const NewTask& task) {
   Statement has = database.Prepare("SELECT 1 FROM asset WHERE hash = ?");
   Statement add = database.Prepare("INSERT INTO asset VALUES(?, ?, ?)");
   Statement name = database.Prepare("INSERT INTO task_asset VALUES(?, ?, ?)");
+  std::size_t bytes = 0;
   for (const auto& [path, content] : files.files) {
+    CheckTaskBytes(bytes += content.size());
     const std::string hash = ContentHash(content);
     if (!has.Bind(hash).Step()) {
       add.Bind(hash).Bind(static_cast<std::int64_t>(content.size()));

@@ -108,6 +108,9 @@ inline constexpr const char* kUnfinished = "unfinished";
 /// The engine of a recording: nothing was simulated.
 inline constexpr const char* kNoEngine = "none";
 
+/// Of all files of a task. Throws DatabaseError if it is too much.
+void CheckTaskBytes(std::size_t bytes);
+
 struct NewTask {
   TaskFiles files;
   std::string scenario, shows;

@@ -249,6 +249,8 @@ class Proposal {
 
 constexpr std::size_t kMostEntries = 10'000, kMostHeaderBytes = 10'000;
 constexpr std::size_t kEndBytes = 22, kMostCommentBytes = 65'535;
+/// Of an array, to find out what it is.
+constexpr std::size_t kFoundNumbers = 50, kFoundBytes = kMostHeaderBytes + 12 + 8 * kFoundNumbers;
 
 /// A file in the zip file.
 struct ZipEntry {
@@ -276,8 +278,8 @@ std::string_view ValueOfKey(std::string_view header, std::string_view key) {
   return header;
 }
 
-/// Returns what is wrong, or "".
-std::string ReadNumpy(std::string_view bytes, NumpyArray& array) {
+/// `most`: numbers of its data. Returns what is wrong, or "".
+std::string ReadNumpy(std::string_view bytes, NumpyArray& array, std::size_t most = SIZE_MAX) {
   ByteReader reader{.bytes = bytes};
   if (reader.Bytes(6) != "\x93NUMPY") return "it is no array of NumPy";
   const auto major = reader.Number<std::uint8_t>();
@@ -312,7 +314,7 @@ std::string ReadNumpy(std::string_view bytes, NumpyArray& array) {
   }
   if (ValueOfKey(header, "'fortran_order'").starts_with("True") && array.shape.size() > 1)
     return "its columns stand one after another: numpy.ascontiguousarray turns them into rows";
-  array.data = reader.Bytes(count * static_cast<std::size_t>(array.bytes));
+  array.data = reader.Bytes(std::min(count, most) * static_cast<std::size_t>(array.bytes));
   if (!reader.ok) return fmt::format("it is cut off: {} numbers are wanted", count);
   array.text = fmt::format("({}) {}", fmt::join(array.shape, ", "), type.substr(0, 3));
   return "";
@@ -379,9 +381,11 @@ class NpzRows : public RowSource {
     for (const auto& [name, entry] : entries_) {
       std::string content;
       NumpyArray array;
-      if (!Unpack(entry, content).empty() || !ReadNumpy(content, array).empty()) continue;
+      if (!Unpack(entry, content, kFoundBytes).empty() ||
+          !ReadNumpy(content, array, kFoundNumbers).empty())
+        continue;
       std::vector<std::size_t> shape = array.shape;
-      for (std::size_t i = 0; shape.size() < 2 && i < std::min<std::size_t>(array.Rows(), 50); ++i)
+      for (std::size_t i = 0; shape.size() < 2 && i < std::min(array.Rows(), kFoundNumbers); ++i)
         values[name].push_back(fmt::format("{}", NumberAt(array, i)));
       std::size_t of_row = 1, width = shape.empty() ? 0 : shape.back();
       for (std::size_t i = 1; i < shape.size(); ++i) of_row *= shape[i];
@@ -406,10 +410,17 @@ class NpzRows : public RowSource {
                             part.dataset, names);
       return std::nullopt;
     }
-    std::string content;
-    NumpyArray array;
-    std::string why = Unpack(entry->second, content);
-    if (why.empty()) why = ReadNumpy(content, array);
+    auto& [content, array] = unpacked_[part.dataset];
+    std::string why;
+    if (content.empty()) {
+      const std::size_t size = entry->second.size;
+      bytes_unpacked_ += size;
+      if (bytes_unpacked_ > kMostRowNumbers * sizeof(double) + unpacked_.size() * kMostHeaderBytes)
+        why = fmt::format("more than {} numbers{}", kMostRowNumbers,
+                          bytes_unpacked_ == size ? "" : ", with the arrays before it");
+      if (why.empty()) why = Unpack(entry->second, content, size);
+      if (why.empty()) why = ReadNumpy(content, array);
+    }
     if (!why.empty()) {
       errors.Add(name.where, fmt::format("'{}', at byte {} of the file: {}", part.dataset,
                                          entry->second.at, why));
@@ -433,7 +444,8 @@ class NpzRows : public RowSource {
   }
 
  private:
-  std::string Unpack(const ZipEntry& entry, std::string& content) const {
+  /// At most the first `most` bytes; the checksum is that of all.
+  std::string Unpack(const ZipEntry& entry, std::string& content, std::size_t most) const {
     ByteReader reader{.bytes = bytes_, .at = std::min<std::size_t>(entry.at, bytes_.size())};
     const bool is_entry = reader.Bytes(4) == "PK\x03\x04";
     reader.Bytes(22);
@@ -441,25 +453,26 @@ class NpzRows : public RowSource {
     reader.Bytes(std::size_t{name} + extra);
     const std::string_view packed = reader.Bytes(entry.packed);
     if (!reader.ok || !is_entry) return "it is damaged, or cut off";
-    if (entry.size > kMostRowNumbers * sizeof(double) + kMostHeaderBytes)
-      return fmt::format("more than {} numbers", kMostRowNumbers);
     if (entry.method != 0 && entry.method != 8)
       return fmt::format("it is packed by the method {}; 0 and 8 are read", entry.method);
-    content.resize(entry.size);
+    const bool is_whole = entry.size <= most;
+    content.resize(is_whole ? entry.size : most);
     if (entry.method == 0) {
-      content.assign(packed.substr(0, entry.size));
+      content.assign(packed.substr(0, content.size()));
     } else {
       z_stream stream{};
       stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
       stream.avail_in = entry.packed;
       stream.next_out = reinterpret_cast<Bytef*>(content.data());
-      stream.avail_out = entry.size;
+      stream.avail_out = static_cast<uInt>(content.size());
       if (inflateInit2(&stream, -15) != Z_OK) return "it cannot be unpacked";
       const int state = inflate(&stream, Z_FINISH);
       content.resize(stream.total_out);
       inflateEnd(&stream);
-      if (state != Z_STREAM_END) return "it is damaged: it cannot be unpacked";
+      if (state != Z_STREAM_END && (is_whole || state != Z_BUF_ERROR))
+        return "it is damaged: it cannot be unpacked";
     }
+    if (!is_whole) return "";
     const auto* data = reinterpret_cast<const Bytef*>(content.data());
     if (content.size() != entry.size || crc32_z(0, data, content.size()) != entry.checksum)
       return "it is damaged: its checksum is wrong";
@@ -468,6 +481,13 @@ class NpzRows : public RowSource {
 
   const std::string bytes_;
   std::map<std::string, ZipEntry> entries_;
+  /// Many bodies may lie in one array.
+  struct Unpacked {
+    std::string content;
+    NumpyArray array;
+  };
+  std::map<std::string, Unpacked> unpacked_;
+  std::size_t bytes_unpacked_ = 0;
 };
 
 }  // namespace

@@ -66,8 +66,14 @@ class RowPoseReader {
 
   std::optional<Rows> ReadRows(const Located<std::string>& name) {
     std::optional<Rows> rows = source_.Read(name, errors_);
-    if (rows) shape_ = rows->shape;
-    return rows;
+    if (!rows) return rows;
+    shape_ = rows->shape;
+    numbers_ += rows->values.size();
+    if (numbers_ <= kMostRowNumbers) return rows;
+    Complain(name,
+             fmt::format("is too much: the map asks for more than {} numbers", kMostRowNumbers),
+             "import fewer bodies, or a part of the recording");
+    return std::nullopt;
   }
 
   double SecondsAt(std::size_t frame) const {
@@ -279,7 +285,7 @@ class RowPoseReader {
   std::vector<double> times_;
   PoseFile poses_;
   std::string shape_;  ///< of what was read last
-  std::size_t length_ = 0, frames_ = 0;
+  std::size_t length_ = 0, frames_ = 0, numbers_ = 0;
   std::string length_of_;
   bool orders_ = false, others_ = false;  ///< some have quaternions; some have none
 };

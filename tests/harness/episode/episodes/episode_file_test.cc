@@ -339,6 +339,18 @@ TEST(EpisodeFileOfMany, AJournalOfAnotherRemovesNothing) {
   EXPECT_EQ(Slurped(file), bytes);
 }
 
+TEST(EpisodeFileOfMany, WhatATaskUnpacksHasALimit) {
+  const fs::path file = Fresh("large") / "a.episodes";
+  ASSERT_EQ(Record(file.string()).problem, "");
+  Database(file, Database::Mode::kWrite).Execute("UPDATE asset SET bytes = 100 << 20");
+  const auto opened = EpisodeFile::Open(file);
+  const auto task = opened->TaskOf(opened->episodes()[0]);
+  ASSERT_FALSE(task);
+  EXPECT_EQ(task.error().front().message,
+            "episode 1 (reach/idling_beside_the_object_is_no_reach): the files of a task have more "
+            "than 256 MiB in all");
+}
+
 TEST(EpisodeFileOfMany, AnAlteredFileIsMergedByNameOrRefused) {
   const fs::path folder = Fresh("altered"), good = folder / "a.episodes",
                  bad = folder / "b.episodes", out = folder / "c.episodes";
