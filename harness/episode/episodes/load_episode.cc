@@ -133,18 +133,36 @@ void EpisodeLoader::Refresh() {
   if (library_.read_hand && writes_read_ == tasks_.writes()) return;
   library_ = ProjectLibrary(tasks_.root());
   library_.were_played = true;
+  library_.reads_recording = [this](const std::string& path) { return tasks_.Within(path); };
+  library_.read_hand = [this, read = std::move(library_.read_hand)](
+                           const std::string& hand, std::vector<std::string> grasps) {
+    for (std::string& path : grasps) path = tasks_.Within(path);
+    return read(hand.ends_with(".yaml") ? tasks_.Within(hand) : hand, grasps);
+  };
   std::erase_if(programs_, [](const auto& known) { return known.first.is_own; });
   writes_read_ = tasks_.writes();
 }
 
 grammar::CompileResult EpisodeLoader::Compile(bool is_own, const std::string& name_or_path,
                                               const grammar::Overrides& overrides) {
-  const GrammarKey key{is_own, name_or_path, overrides};
+  const std::string found = is_own ? tasks_.GrammarWithin(name_or_path) : name_or_path;
+  const GrammarKey key{is_own, found, overrides};
   if (const auto known = programs_.find(key); known != programs_.end()) return {known->second, {}};
-  grammar::CompileResult compiled =
-      LoadGrammar(is_own ? tasks_.root() : root_, name_or_path, overrides);
+  grammar::CompileResult compiled = LoadGrammar(is_own ? tasks_.root() : root_, found, overrides);
   if (compiled.program) programs_.emplace(key, compiled.program);
   return compiled;
+}
+
+grammar::Diagnostics EpisodeLoader::OfTask(grammar::Diagnostics diagnostics,
+                                           const EpisodeFile& file,
+                                           const EpisodeRow& episode) const {
+  for (grammar::Diagnostic& diagnostic : diagnostics) {
+    diagnostic.file = file.path() + ": " + tasks_.Original(diagnostic.file);
+    if (diagnostic.message != "no such file") continue;
+    diagnostic.message =
+        fmt::format("no such file was kept with episode {} ({})", episode.id, episode.scenario);
+  }
+  return diagnostics;
 }
 
 Result<LoadedRun> EpisodeLoader::LoadRecording(const EpisodeFile& file, const EpisodeRow& episode,
@@ -156,6 +174,8 @@ Result<LoadedRun> EpisodeLoader::LoadRecording(const EpisodeFile& file, const Ep
   const std::string own = asked.empty() ? header.grammar : asked;
   const std::string name = is_own ? own : choice.grammar;
   grammar::CompileResult compiled = Compile(is_own, name, overrides);
+  if (!compiled.program && is_own)
+    return tl::unexpected(OfTask(std::move(compiled.diagnostics), file, episode));
   if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
   LoadedRun loaded{
       .scenario = PlaceholderFor(header), .program = std::move(compiled.program), .grammar = name};
@@ -177,12 +197,7 @@ Result<LoadedRun> EpisodeLoader::Load(const EpisodeFile& file, const EpisodeRow&
     return Compile(true, name, overrides);
   };
   Result<LoadedRun> loaded = LoadRun(tasks_.RequestOf(task), tasks_.root(), library_, load_grammar);
-  if (!loaded) {
-    grammar::Diagnostics diagnostics = std::move(loaded.error());
-    for (grammar::Diagnostic& diagnostic : diagnostics)
-      diagnostic.file = file.path() + ": " + tasks_.Original(diagnostic.file);
-    return tl::unexpected(std::move(diagnostics));
-  }
+  if (!loaded) return tl::unexpected(OfTask(std::move(loaded.error()), file, episode));
   loaded->scenario.file = tasks_.Original(loaded->scenario.file);
   loaded->warnings.clear();  // they were shown when it was recorded
   if (choice.grammar.empty() && choice.settings.empty()) return loaded;

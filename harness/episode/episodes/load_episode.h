@@ -41,6 +41,9 @@ class EpisodeLoader {
  private:
   Result<LoadedRun> LoadRecording(const EpisodeFile& file, const EpisodeRow& episode,
                                   const TaskFiles& task, const GrammarChoice& choice);
+  /// What is wrong with files of a task, as they were called.
+  grammar::Diagnostics OfTask(grammar::Diagnostics diagnostics, const EpisodeFile& file,
+                              const EpisodeRow& episode) const;
   /// Forgets what was read of the tasks' files if other ones are there now.
   void Refresh();
   /// `is_own`: one of the task's grammars, else one of the project.

@@ -87,6 +87,7 @@ scenario::ScenarioLibrary ProjectLibrary(const std::string& root, std::vector<st
           .reads_recording =
               [files](const std::string& path) {
                 if (files) files->push_back(path);
+                return path;
               }};
 }
 

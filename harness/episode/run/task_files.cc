@@ -23,6 +23,17 @@ std::string Stored(const std::string& path, const fs::path& root) {
   return whole.generic_string();
 }
 
+/// The same with other paths, of one grammar or of several joined with '+'.
+template <typename Change>
+std::string WithPaths(const std::string& grammars, const Change& change) {
+  std::string all;
+  for (const std::string& one : SplitGrammars(grammars)) {
+    const bool is_path = one.find('/') != std::string::npos || one.ends_with(kGrammarEnding);
+    all += (all.empty() ? "" : "+") + (is_path ? change(one) : one);
+  }
+  return all;
+}
+
 }  // namespace
 
 std::string TaskFiles::Identity() const {
@@ -38,8 +49,9 @@ TaskFiles PackTask(const RunRequest& run, const std::vector<std::string>& tried,
   TaskFiles task{.run = run};
   task.run.scenario_file = Stored(run.scenario_file, home);
   std::error_code error;
-  if (run.grammar.find('/') != std::string::npos || run.grammar.ends_with(".grammar"))
-    task.run.grammar = Stored(run.grammar, home);
+  const auto stored = [&](const std::string& path) { return Stored(path, home); };
+  const bool is_one = run.grammar.find('+') != std::string::npos && fs::exists(run.grammar, error);
+  task.run.grammar = is_one ? stored(run.grammar) : WithPaths(run.grammar, stored);
   std::vector<std::string> paths = tried;
   // The scenario's own grammar is not read then, but has to be known.
   for (const std::string& name : GrammarNames(root)) {
@@ -94,11 +106,24 @@ std::string UnpackedTasks::Unpack(const TaskFiles& task) {
 RunRequest UnpackedTasks::RequestOf(const TaskFiles& task) const {
   RunRequest run = task.run;
   run.scenario_file = PathOf(run.scenario_file);
-  if (task.files.contains(run.grammar)) run.grammar = PathOf(run.grammar);
+  run.grammar = GrammarWithin(run.grammar);
   return run;
 }
 
+std::string UnpackedTasks::Within(const std::string& path) const {
+  const std::string normal = fs::path(path).lexically_normal().string();
+  const bool is_in = normal.starts_with(folder_->path().lexically_normal().string() + "/");
+  return is_in ? path : PathOf(path);
+}
+
+std::string UnpackedTasks::GrammarWithin(const std::string& grammar) const {
+  if (const std::string whole = Within(grammar); written_.contains(Original(whole))) return whole;
+  return WithPaths(grammar, [&](const std::string& path) { return Within(path); });
+}
+
 std::string UnpackedTasks::Original(const std::string& path) const {
+  if (path.find('+') != std::string::npos)
+    return WithPaths(path, [&](const std::string& one) { return Original(one); });
   const std::string outside = folder_->path().string() + "/outside";
   if (path.starts_with(root_ + "/")) return path.substr(root_.size() + 1);
   if (path.starts_with(outside + "/")) return path.substr(outside.size());

@@ -36,6 +36,10 @@ class UnpackedTasks {
   std::string Unpack(const TaskFiles& task);
   /// After Unpack(): what LoadRun() needs.
   RunRequest RequestOf(const TaskFiles& task) const;
+  /// What a file of a task names is looked for in the folder, whatever its path says.
+  std::string Within(const std::string& path) const;
+  /// The same of a grammar's name or path, or of several.
+  std::string GrammarWithin(const std::string& grammar) const;
   const std::string& root() const { return root_; }
   /// How often a file that is no scenario was written: as long as it is the same, what was read
   /// from them holds.

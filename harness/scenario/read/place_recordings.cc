@@ -199,8 +199,7 @@ class RecordingReader {
 
   std::string PathOf(const RecordingYaml& entry) const {
     const std::string path = (std::filesystem::path(folder_) / entry.recording.value).string();
-    if (library_.reads_recording) library_.reads_recording(path);
-    return path;
+    return library_.reads_recording ? library_.reads_recording(path) : path;
   }
 
   /// Keeps the warnings; false when there are errors.

@@ -25,8 +25,8 @@ struct ScenarioLibrary {
   std::function<Result<physics::HandModel>(const std::string& name_or_path,
                                            const std::vector<std::string>& grasps)>
       read_hand;
-  /// Called with the path of each recording before it is read; may be empty.
-  std::function<void(const std::string& path)> reads_recording = {};
+  /// Called with the path of each recording before it is read; says which one is. May be empty.
+  std::function<std::string(const std::string& path)> reads_recording = {};
   /// The scenarios have been read and played before: what their `vary` may draw, and whether things
   /// stand within each other, is not checked again.
   bool were_played = false;

@@ -339,6 +339,70 @@ TEST(EpisodeFileOfMany, AJournalOfAnotherRemovesNothing) {
   EXPECT_EQ(Slurped(file), bytes);
 }
 
+/// The same file with another asset in the place of the one whose path ends so.
+void Replace(const fs::path& file, const std::string& end, const std::string& from,
+             const std::string& to) {
+  const auto opened = EpisodeFile::Open(file);
+  ASSERT_TRUE(opened) << MessageOf(opened);
+  const auto task = opened->TaskOf(opened->episodes()[0]);
+  ASSERT_TRUE(task);
+  const auto asset =
+      std::ranges::find_if(task->files, [&](const auto& one) { return one.first.ends_with(end); });
+  ASSERT_NE(asset, task->files.end()) << end;
+  std::string content = asset->second;
+  const std::size_t at = content.find(from);
+  ASSERT_NE(at, std::string::npos) << content;
+  content.replace(at, from.size(), to);
+  Compressor compressor;
+  const Database database(file, Database::Mode::kWrite);
+  Statement add = database.Prepare("INSERT INTO asset VALUES(?, ?, ?)");
+  add.Bind(ContentHash(content)).Bind(static_cast<std::int64_t>(content.size()));
+  add.BindBytes(compressor.Pack(content)).Run();
+  Statement name = database.Prepare("UPDATE task_asset SET hash = ? WHERE path = ?");
+  name.Bind(ContentHash(content)).Bind(asset->first).Run();
+}
+
+TEST(EpisodeFileOfMany, NoFileIsReadThatWasNotKeptWithAnEpisode) {
+  const fs::path folder = Fresh("asked"), good = folder / "a.episodes", bad = folder / "b.episodes";
+  ASSERT_EQ(Record(good.string()).problem, "");
+  const std::string letter = (folder / "letter").string(), secret = "grammar of the user";
+  for (const char* end : {"", ".grammar", ".csv", ".hand.yaml"}) Spill(letter + end, secret);
+  const auto loaded = [&] {
+    const auto opened = EpisodeFile::Open(bad);
+    if (!opened) return MessageOf(opened);
+    EpisodeLoader loader(kRoot);
+    const auto run = loader.Load(*opened, opened->episodes()[0]);
+    return run ? "" : grammar::Format(run.error());
+  };
+  const std::string kept =
+      ": error: no such file was kept with episode 1 "
+      "(reach/idling_beside_the_object_is_no_reach)";
+  for (const std::string& asked :
+       {letter, letter + ".grammar", "../../../../../../../../.." + letter,
+        "pick_and_place+" + letter + ".grammar", std::string("no/such.grammar")}) {
+    fs::copy_file(good, bad, fs::copy_options::overwrite_existing);
+    Database(bad, Database::Mode::kWrite)
+        .Prepare("UPDATE task SET asked_grammar = ?")
+        .Bind(asked)
+        .Run();
+    const std::string said = loaded();
+    EXPECT_EQ(said.find(secret), std::string::npos) << said;
+    EXPECT_TRUE(said.find(kept) != std::string::npos || said.find("'letter'") != std::string::npos)
+        << asked << said;
+    EXPECT_EQ(said.find("prehend-"), std::string::npos) << "a folder that nobody knows: " << said;
+  }
+  const std::string scenario = "idling_beside_the_object_is_no_reach.yaml";
+  for (const auto& [from, to] :
+       {std::pair<std::string, std::string>{"hand: human_right", "hand: " + letter + ".hand.yaml"},
+        {"{wait_s: 1.0}", "{recording: " + letter + ".csv}"}}) {
+    fs::copy_file(good, bad, fs::copy_options::overwrite_existing);
+    Replace(bad, scenario, from, to);
+    const std::string said = loaded();
+    EXPECT_NE(said.find(kept), std::string::npos) << said;
+    EXPECT_EQ(said.find(secret), std::string::npos) << said;
+  }
+}
+
 TEST(EpisodeFileOfMany, WhatATaskUnpacksHasALimit) {
   const fs::path file = Fresh("large") / "a.episodes";
   ASSERT_EQ(Record(file.string()).problem, "");
