@@ -55,15 +55,15 @@ class CompositionLowering {
     };
     for (const ast::Relation& relation : d_.relations) {
       ComposeRule::Clause clause{.left = find(relation.left, relation.place),
-                                 .right = find(relation.right, relation.place)};
+                                 .right = find(relation.right, relation.right_place)};
       clause.within_s.fill(-1);
       for (const ast::Relation::Alternative& one : relation.alternatives)
-        LowerAlternative(relation, one, clause);
+        LowerAlternative(one, clause);
       Composition().clauses.push_back(clause);
     }
     for (const ast::Absence& absence : d_.absences) {
-      const int left = find(absence.left, absence.place),
-                right = find(absence.right, absence.place);
+      const int left = find(absence.left, absence.left_place),
+                right = find(absence.right, absence.right_place);
       const int reference = lowering_.RuleCall(absence.call);
       if (reference == kNone || lowering_.complaints() != before) return;
       Composition().absences.push_back(
@@ -83,11 +83,35 @@ class CompositionLowering {
  private:
   ComposeRule& Composition() { return program_.rules[index_].As<ComposeRule>(); }
 
-  // Both name an event.
-  bool Share(int left, int right) {
+  // Both name an event; `by_any`: or may, as `any` may be whom the other one names.
+  bool Share(int left, int right, bool by_any = false) {
+    const std::vector<Reference>& all = program_.rules[index_].references;
     const std::vector<int> some = Composition().ChoicesFor(left);
-    return std::ranges::any_of(Composition().ChoicesFor(right),
-                               [&](int one) { return std::ranges::find(some, one) != some.end(); });
+    return std::ranges::any_of(Composition().ChoicesFor(right), [&](int one) {
+      return std::ranges::any_of(some, [&](int other) {
+        return one == other || (by_any && MayBeOne(all[one], all[other]));
+      });
+    });
+  }
+
+  // Of the rule that is written, not of one that was made for `any` or for classes: kNone is any.
+  Reference Written(Reference call) {
+    while (program_.rules[call.rule].hidden) {
+      Reference of = program_.rules[call.rule].references.front();
+      for (int& role : of.roles) role = role == kNone ? kNone : call.roles[role];
+      call = of;
+    }
+    return call;
+  }
+
+  bool MayBeOne(Reference a, Reference b) {
+    a = Written(a), b = Written(b);
+    const auto alike = [&](int i, int k) {
+      return a.roles[i] == b.roles[k] || a.roles[i] == kNone || b.roles[k] == kNone;
+    };
+    const bool crossed = program_.rules[a.rule].symmetric && alike(0, 1) && alike(1, 0);
+    return a.rule == b.rule && (crossed || (alike(0, 0) && alike(1, 1))) && alike(2, 2) &&
+           alike(3, 3);
   }
 
   // What is named twice happens twice.
@@ -98,7 +122,7 @@ class CompositionLowering {
     }
     for (int left = 0; left < Composition().count; ++left) {
       for (int right = left + 1; right < Composition().count; ++right) {
-        if (!Share(left, right)) continue;
+        if (!Share(left, right, /*by_any=*/true)) continue;
         ComposeRule::Clause other{
             .left = left,
             .right = right,
@@ -109,11 +133,10 @@ class CompositionLowering {
     }
   }
 
-  void LowerAlternative(const ast::Relation& relation, const ast::Relation::Alternative& one,
-                        ComposeRule::Clause& clause) {
+  void LowerAlternative(const ast::Relation::Alternative& one, ComposeRule::Clause& clause) {
     const std::optional<Allen> allen = AllenNamed(one.name);
     if (!allen) {
-      return lowering_.Complain(relation.place, "'" + one.name + "' is none of Allen's relations",
+      return lowering_.Complain(one.place, "'" + one.name + "' is none of Allen's relations",
                                 "they are " + AllenNames());
     }
     constexpr AllenSet kGap = Bit(Allen::kBefore) | Bit(Allen::kAfter);

@@ -95,12 +95,13 @@ struct Part {
 struct Relation {
   struct Alternative {
     std::string name;
+    Place place;
     std::optional<Expr> within;
   };
   std::string left;
   std::vector<Alternative> alternatives;
   std::string right;
-  Place place;
+  Place place, right_place;
 };
 
 /// `without event(roles) between left and right`, likewise.
@@ -108,7 +109,7 @@ struct Absence {
   Expr call;
   std::string left;
   std::string right;
-  Place place;
+  Place left_place, right_place;
 };
 
 struct Definition {

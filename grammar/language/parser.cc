@@ -330,10 +330,12 @@ class Parser : public LawParser {
     do {
       const Place place = Peek().place;
       if (Accept("without")) {
-        ast::Absence absence{.call = ParsePostfix(), .left = {}, .right = {}, .place = place};
+        ast::Absence absence{.call = ParsePostfix(), .left = {}, .right = {}};
         Expect("between", "without touching(hand, cup) between a and b");
+        absence.left_place = Peek().place;
         absence.left = ExpectName("a label");
         Expect("and");
+        absence.right_place = Peek().place;
         absence.right = ExpectName("a label");
         definition.absences.push_back(std::move(absence));
         continue;
@@ -344,9 +346,11 @@ class Parser : public LawParser {
         if (At("during"))
           Fail("expected one of Allen's relations, found 'during'",
                "'during' is called 'inside' here, for it begins a clause of 'from .. to'");
-        relation.alternatives.push_back({ExpectName("one of Allen's relations"), {}});
+        const Place named = Peek().place;
+        relation.alternatives.push_back({ExpectName("one of Allen's relations"), named, {}});
         if (Accept("within")) relation.alternatives.back().within = ParseSum();
       } while (Accept("|"));
+      relation.right_place = Peek().place;
       relation.right = ExpectName("a label");
       definition.relations.push_back(std::move(relation));
     } while (Accept(","));
@@ -444,7 +448,8 @@ class Parser : public LawParser {
                          : ghost ? "expected 'ghost'"
                                  : "expected nothing after 'without'") +
                  ", found " + Found(),
-             "a phase may be drawn without ghost, any other event without row");
+             "what is drawn as something has no row: drawn without row; drawn as phase without "
+             "ghost");
       }
     } else if (At("with") && At("ghost", 1) && At("at", 2)) {
       if (drawing.as != DrawnAs::kPhase)

@@ -231,7 +231,7 @@ class Meaning:
             hull, begins, ends = "all of" in rule, [one[0] for one in chosen], [one[1] for one in chosen]
             first, last = (min(chosen), max(chosen, key=lambda one: one[1])) if hull else (chosen[0], chosen[-1])
             whole = (first[0], last[1], first[2], last[3], max(one[4] for one in chosen))
-            twice = any(set(parts[i][1]) & set(parts[k][1]) and chosen[i] == chosen[k] for i in range(len(parts)) for k in range(i))
+            twice = any(self.may_be_one(parts[i], parts[k]) and chosen[i] == chosen[k] for i in range(len(parts)) for k in range(i))
             if whole[0] >= whole[1] or hull and (twice or whole[1] - whole[0] > rule["within"] * self.tps):
                 continue
             if all(self.relates(relation, chosen, where, env) for relation in rule.get("where", [])):
@@ -241,6 +241,11 @@ class Meaning:
         return self.taken(sorted(found, key=order))
 
     all_ = compose_
+
+    # Of two parts: some call of each may be about one interval, as `any` may be whom the other names.
+    def may_be_one(self, left, right):
+        alike = lambda a, b: a[0] == b[0] or "any" in (a[0], b[0])
+        return any(a[1] == b[1] and all(alike(*who) for who in zip(a[2:], b[2:])) for a in left[1] for b in right[1])
 
     def taken(self, found):
         taken = []

@@ -241,6 +241,19 @@ TEST(Compose, AnIntervalOfEitherStandsForThePart) {
       "");
 }
 
+// `any` may be whom the other part names: one interval is not two.
+TEST(Compose, WhatIsNamedTwiceHappensTwiceAlsoByAny) {
+  for (const std::string parts :
+       {"a(h, any), a(any, c)", "a(h, c), a(h, any)", "a(h, any Cup), a(any, c)",
+        "b(h, t) or a(h, any), a(h, c)", "touching(h, c), touching(c, h)"}) {
+    const std::string rule = "all of x: " + parts.substr(0, parts.find("),") + 1) +
+                             ", y:" + parts.substr(parts.find("),") + 2) +
+                             ", z: b(h, t) within 80 ms";
+    EXPECT_EQ(Found(rule, "..##......", "..#.......", 100), "") << parts;
+    EXPECT_EQ(Found(rule, "..##.#....", "..#.......", 100), "[2,6) ") << parts;
+  }
+}
+
 // One rule finds plate, cup and knife in each of the six orders, and reaches over all three.
 TEST(Compose, FindsAllOfThemInAnyOrder) {
   const auto program = testing::CompileText(R"(

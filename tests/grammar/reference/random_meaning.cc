@@ -269,7 +269,7 @@ class Meaning {
                   : reference::Compose(parts, fits, rule.takes_first);
   }
 
-  // Two parts name an event.
+  // Two parts may be about one event: `any` may be whom the other one names.
   static bool Share(const RandomRule& rule, std::size_t i, std::size_t k) {
     const auto calls = [&](std::size_t part) {
       std::vector<Term> all = {rule.calls[part]};
@@ -279,7 +279,7 @@ class Meaning {
     };
     for (const Term& one : calls(i)) {
       for (const Term& other : calls(k))
-        if (one.which == other.which && one.named == other.named) return true;
+        if (one.which == other.which) return true;
     }
     return false;
   }
