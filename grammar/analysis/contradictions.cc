@@ -84,14 +84,17 @@ Op Mirrored(Op op) {
 bool Bounds::Add(NodeId index, bool negated) {
   const Node& node = program_.nodes[index];
   if (node.op == Op::kNot) return Add(node.args[0], !negated);
-  if (node.op == Op::kKnown && !negated && !Add(node.args[0])) return false;
+  if (node.op == Op::kKnown && !(negated ? AddNotKnown(node.args[0]) : Add(node.args[0])))
+    return false;
   if (node.op == Op::kAnd || node.op == Op::kOr) {
     if ((node.op == Op::kAnd) != negated)
       return Add(node.args[0], negated) && Add(node.args[1], negated);
     alternatives_.push_back({index, negated});
     return true;
   }
-  if (IsComparison(node.op)) return AddComparison(negated ? Negated(node.op) : node.op, node);
+  if (IsComparison(node.op))
+    return AddAtom(index, negated) && AddComparison(negated ? Negated(node.op) : node.op, node);
+  if (node.op == Op::kHolds && !AddCall(rule_.references[node.slot], negated)) return false;
   if (node.op == Op::kIsA) return AddClass(node, negated);
   // What begins is true from now on. What ends is false, but an event may end where its next
   // interval begins.
@@ -139,6 +142,36 @@ bool Bounds::AddAtom(NodeId index, bool negated) {
                 negated ? 0 : 1);
 }
 
+// It is false, or else unknown: between the two.
+bool Bounds::AddNotKnown(NodeId index) {
+  if (!denies_) return true;
+  bool is_not = false;
+  for (; program_.nodes[index].op == Op::kNot; index = program_.nodes[index].args[0])
+    is_not = !is_not;
+  return Narrow(Signature(program_, rule_, index), {.low = 0, .high = 1},
+                is_not ? Op::kGreater : Op::kLess, is_not ? 0 : 1);
+}
+
+// Where it holds of somebody, it holds of any.
+bool Bounds::AddCall(const Reference& call, bool negated) {
+  const auto is_any_of = [&](const Reference& any, const Reference& one) {
+    const auto* const of = program_.rules[any.rule].If<AnyRule>();
+    if (of == nullptr || of->at_least != 1 || of->one != kNone) return false;
+    const Reference& each = program_.rules[any.rule].references.front();
+    bool fits = each.rule == one.rule;
+    for (std::size_t i = 0; fits && i < each.roles.size(); ++i)
+      fits = each.roles[i] == kNone ||
+             any.roles[static_cast<std::size_t>(each.roles[i])] == one.roles[i];
+    return fits;
+  };
+  const bool denied = std::ranges::any_of(calls_, [&](const auto& other) {
+    return other.second != negated &&
+           (negated ? is_any_of(call, other.first) : is_any_of(other.first, call));
+  });
+  calls_.emplace_back(call, negated);
+  return !denied;
+}
+
 bool Bounds::AddComparison(Op op, const Node& comparison) {
   const NodeId left = comparison.args[0];
   const NodeId right = comparison.args[1];
@@ -177,7 +210,10 @@ bool Bounds::Narrow(const std::string& value, const Range& range, Op op, double 
     limit.range.high = number;
     limit.high_open = op == Op::kLess;
   }
-  if (limit.range.IsPoint()) return !limit.low_open && !limit.high_open;
+  if (op == Op::kNotEqual) limit.never.push_back(number);
+  if (limit.range.IsPoint())
+    return !limit.low_open && !limit.high_open &&
+           std::ranges::find(limit.never, limit.range.low) == limit.never.end();
   return limit.range.low < limit.range.high;
 }
 

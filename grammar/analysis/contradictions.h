@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "grammar/analysis/value_ranges.h"
@@ -33,7 +34,9 @@ Op Mirrored(Op op);
 
 class Bounds {
  public:
-  Bounds(const Program& program, const Rule& rule) : program_(program), rule_(rule) {}
+  /// `denies`: what is added negated is false; else it is not true, and may be unknown.
+  Bounds(const Program& program, const Rule& rule, bool denies = true)
+      : program_(program), rule_(rule), denies_(denies) {}
 
   /// Adds what must be so for this truth value to be true. False: it contradicts what was added
   /// before.
@@ -49,12 +52,15 @@ class Bounds {
     Range range;
     bool low_open = false;
     bool high_open = false;
+    std::vector<double> never = {};
   };
   struct Alternative {
     NodeId node;
     bool negated = false;
   };
   bool AddAtom(NodeId node, bool negated);
+  bool AddNotKnown(NodeId node);
+  bool AddCall(const Reference& reference, bool negated);
   bool AddClass(const Node& is, bool negated);
   bool MayFollowAtOnce(NodeId node) const;
   bool AddComparison(Op op, const Node& comparison);
@@ -63,6 +69,7 @@ class Bounds {
 
   const Program& program_;
   const Rule& rule_;
+  const bool denies_;
   struct ClassClaim {
     int role = kNone;
     std::string name;
@@ -70,6 +77,7 @@ class Bounds {
   };
   std::map<std::string, Limit> limits_;
   std::vector<ClassClaim> classes_;
+  std::vector<std::pair<Reference, bool>> calls_;  ///< and whether it is negated
   std::vector<Alternative> alternatives_;
 };
 

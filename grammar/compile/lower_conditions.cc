@@ -174,7 +174,7 @@ std::optional<Diagnostic> Lowering::Contradiction(const Expr& chain,
                         WithParams(of, is_and ? "use 'or', or change one of the bounds"
                                               : "use 'and', or change one of the bounds"));
   };
-  Bounds bounds(symbols_.program, symbols_.program.rules[rule_]);
+  Bounds bounds(symbols_.program, symbols_.program.rules[rule_], /*denies=*/is_and);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const Expr& arg = chain.args[i];
     if (parts[i].verdict == Verdict::kPossible && !bounds.Add(parts[i].node, !is_and))

@@ -354,10 +354,13 @@ class DefinitionLowering {
     if (d_.lasting_to) {
       const double most_s = lowering_.Span(*d_.lasting_to, "'lasting .. to'");
       Here().lasting_most_s = most_s;
-      if (most_s < Here().lasting_s)
+      const auto* const from = Here().If<FromToRule>();
+      const bool is_waited = from != nullptr && from->absence && most_s < from->within_s;
+      if (most_s < Here().lasting_s || is_waited)
         lowering_.ComplainOrWarn(d_.lasting_to->place,
                                  "no interval lasts that long and no longer than this",
-                                 "the shorter time stands first: lasting 1 s to 2 s");
+                                 is_waited ? "an absence lasts as long as its 'within'"
+                                           : "the shorter time stands first: lasting 1 s to 2 s");
     }
     if (Here().form() == Form::kCompose &&
         (d_.requirement || d_.confirmed || d_.style || !d_.attributes.empty())) {
