@@ -92,12 +92,12 @@ class ScriptPlayer::Resolver {
   };
   /// Of what is held, and what is glued to it: straight down on the support.
   std::optional<Landing> FirstToLand(BodyIndex held, BodyIndex support) const;
-  /// Of what it is to carry or to put down.
+  /// Of what it is to carry or to put down; what another hand has, it has lost, too.
   void NoteLoss(BodyIndex held) {
-    if (HandsOn(held, now_) == 0)
-      note_ = "no hand touches '" + scene_.body(held).name +
-              "', which this step is to move: was it lost on the way? 'poses' tells where it is at "
-              "each moment";
+    if (!Touches(step_.hand, held, now_))
+      note_ = "'" + scene_.hand(step_.hand).name + "' does not touch '" + scene_.body(held).name +
+              "', which this step is to move: was that lost on the way? 'poses' tells where it is "
+              "at each moment";
   }
   /// Where it is; a problem if there is no such thing.
   Pose PoseOf(const PoseFrame& frame);
@@ -131,7 +131,7 @@ void ScriptPlayer::Resolver::MoveBy(const Eigen::Vector3d& by_m, double duration
 }
 
 void ScriptPlayer::Resolver::TurnUpright(BodyIndex body) {
-  if (body == kNone || !At(stood_, body) || HandsOn(body, now_) == 0) return;
+  if (body == kNone || !At(stood_, body) || !Touches(step_.hand, body, now_)) return;
   const Pose& X_WB = now_.body(body).X_WB;
   const Eigen::Vector3d up_W = X_WB.q * At(stood_, body)->up_B;
   if (up_W.z() < kCosMostLean) return;
@@ -171,7 +171,7 @@ void ScriptPlayer::Resolver::operator()(const TriggerStep& trigger) {
   Segment segment = StraightSegment(hand_.target, hand_.target.X_WH, step_.over_s);
   segment.trigger_end = trigger.trigger;
   hand_.closes = trigger.trigger > hand_.target.trigger;
-  if (!hand_.closes && hand_.object != kNone && HandsOn(hand_.object, now_) > 0)
+  if (!hand_.closes && hand_.object != kNone && Touches(step_.hand, hand_.object, now_))
     hand_.let_go = true;
   Follow(segment);
 }

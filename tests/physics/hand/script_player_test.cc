@@ -251,9 +251,9 @@ TEST(ScriptPlayerTest, PlacingOnWhatIsNotBelowNamesTheStep) {
   }
   EXPECT_EQ(
       player.problem(),
-      "milk.yaml:12:5: place_on: no part of 'post' is below 'object'; no hand touches 'object', "
-      "which this step is to move: was it lost on the way? 'poses' tells where it is at each "
-      "moment");
+      "milk.yaml:12:5: place_on: no part of 'post' is below 'object'; 'hand' does not touch "
+      "'object', which this step is to move: was that lost on the way? 'poses' tells where it is "
+      "at each moment");
 }
 
 /// Whether the object touches the table.
@@ -294,12 +294,16 @@ TEST(ScriptPlayerTest, WhatIsGluedToWhatIsHeldIsPutDownWithIt) {
 }
 
 TEST(ScriptPlayerTest, NotesWhatIsLostOnTheWay) {
-  const Scene scene = MakeScene({});
+  Scene scene = MakeScene({});
+  scene.hands.push_back({"other", scene.hands[0].model, {{-0.2, 0.4, 1.05}}});
   Simulation still(scene, {});
-  for (const StepAction& step :
-       {StepAction(CarryStep{{0.2, -0.4}}), StepAction(PlaceStep{"table"})}) {
+  Snapshot in_other_hand = still.snapshot();
+  in_other_hand.contacts.push_back({.a = {.hand = HandIndex(1)}, .b = {.body = BodyIndex(1)}});
+  for (const auto& [step, now] : {std::pair(StepAction(CarryStep{{0.2, -0.4}}), still.snapshot()),
+                                  std::pair(StepAction(CarryStep{{0.2, -0.4}}), in_other_hand),
+                                  std::pair(StepAction(PlaceStep{"table"}), in_other_hand)}) {
     ScriptPlayer player(scene, {.stages = {One(ReachStep{"object"}, 0.01), One(step, 0.5)}});
-    while (player.Advance(still.snapshot())) {
+    while (player.Advance(now)) {
     }
     EXPECT_EQ(player.problem(), "");
     // The hand of a world that does not move gets nowhere, either.
@@ -309,11 +313,12 @@ TEST(ScriptPlayerTest, NotesWhatIsLostOnTheWay) {
     const bool carries = std::holds_alternative<CarryStep>(step);
     EXPECT_EQ(player.notes().size(), carries ? 2u : 1u);
     EXPECT_EQ(std::ranges::count_if(player.notes(), says("the move ends with the hand ")), carries);
-    EXPECT_EQ(std::ranges::count_if(
-                  player.notes(),
-                  says("no hand touches 'object', which this step is to move: was it lost on the "
-                       "way? 'poses' tells where it is at each moment")),
-              1);
+    EXPECT_EQ(
+        std::ranges::count_if(
+            player.notes(),
+            says("'hand' does not touch 'object', which this step is to move: was that lost on "
+                 "the way? 'poses' tells where it is at each moment")),
+        1);
   }
 }
 
