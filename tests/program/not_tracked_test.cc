@@ -105,6 +105,31 @@ TEST_F(NotTracked, WhatALongGapLeavesUnknownEndsAndNeitherDoesItsOppositeHold) {
   EXPECT_NE(never.out.find("near    0.0000   0.8000"), std::string::npos) << never.out;
 }
 
+// What the last frame says holds to the end.
+TEST_F(NotTracked, TheTimeAfterTheLastFrameCounts) {
+  for (const auto& [bridge_s, said] :
+       {std::pair("0", "0.000 s are bridged, in 10.000 s it is unknown"),
+        std::pair("0.5", "10.000 s are bridged, in 0.000 s it is unknown")}) {
+    const std::string text =
+        std::string(
+            "{\"recording\": 1, \"episode\": \"e\", \"ticks_per_second\": 100, "
+            "\"bridge_s\": ") +
+        bridge_s +
+        ", \"entities\": {\"cup\": {\"class\": \"Cup\", \"size_m\": [0.1, 0.1, 0.1]}, \"hand\": "
+        "{\"hand\": true, \"size_m\": [0, 0, 0]}}}\n"
+        "{\"tick\": 0, \"samples\": {\"cup\": {\"at_m\": [0, 0, 0]}, \"hand\": {\"at_m\": [0, 0, "
+        "0]}}}\n"
+        "{\"tick\": 10, \"samples\": {\"cup\": null}}\n{\"end_tick\": 1010}\n";
+    for (const std::vector<std::string>& words :
+         {std::vector<std::string>{"episode", "resegment"}, {"grammar", "watch"}}) {
+      const Said of = Segment(text, words);
+      EXPECT_NE(of.err.find(std::string("'cup' is not tracked in 1 gap: ") + said),
+                std::string::npos)
+          << of.err;
+    }
+  }
+}
+
 TEST_F(NotTracked, WatchSaysTheSame) {
   const Said said = Segment(Recording(40, 60), {"grammar", "watch"});
   EXPECT_EQ(said.exit_code, 0) << said.err;

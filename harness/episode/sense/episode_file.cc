@@ -207,8 +207,7 @@ const GapTolerance::Seen* GapTolerance::LastOf(std::size_t entity, grammar::Tick
 void GapTolerance::Fill(grammar::Tick tick, std::vector<grammar::EntitySample>& looks) {
   for (std::size_t i = 0; i < looks.size(); ++i) {
     Entity& entity = seen_[i];
-    if (!entity.tracked)  // what a frame says holds until the next one
-      (LastOf(i, *before_) ? entity.gaps.bridged : entity.gaps.unknown) += tick - *before_;
+    entity.gaps = GapsUntil(tick, i);
     const bool is_tracked = grammar::IsTracked(looks[i]);
     if (entity.tracked && !is_tracked) ++entity.gaps.gaps;
     entity.tracked = is_tracked;
@@ -220,9 +219,17 @@ void GapTolerance::Fill(grammar::Tick tick, std::vector<grammar::EntitySample>& 
   before_ = tick;
 }
 
-std::vector<LookGaps> GapTolerance::Gaps() const {
+// What a frame says holds until the next one.
+LookGaps GapTolerance::GapsUntil(grammar::Tick tick, std::size_t entity) const {
+  const auto& [last, tracked, so_far] = seen_[entity];
+  LookGaps gaps = so_far;
+  if (!tracked) (LastOf(entity, *before_) ? gaps.bridged : gaps.unknown) += tick - *before_;
+  return gaps;
+}
+
+std::vector<LookGaps> GapTolerance::Gaps(grammar::Tick end_tick) const {
   std::vector<LookGaps> all;
-  for (const Entity& entity : seen_) all.push_back(entity.gaps);
+  for (std::size_t i = 0; i < seen_.size(); ++i) all.push_back(GapsUntil(end_tick, i));
   return all;
 }
 

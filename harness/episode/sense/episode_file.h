@@ -42,8 +42,8 @@ class GapTolerance {
   /// Replaces what is not tracked and still counts, by the last look with its velocity.
   void Fill(grammar::Tick tick, std::vector<grammar::EntitySample>& looks);
 
-  /// By entity.
-  std::vector<LookGaps> Gaps() const;
+  /// By entity, of an episode that ends there.
+  std::vector<LookGaps> Gaps(grammar::Tick end_tick) const;
 
  private:
   struct Entity {
@@ -51,6 +51,8 @@ class GapTolerance {
     bool tracked = true;  ///< in the last frame
     LookGaps gaps;
   };
+  LookGaps GapsUntil(grammar::Tick tick, std::size_t entity) const;
+
   grammar::Tick most_ = 0;
   std::optional<grammar::Tick> before_;  ///< the last frame
   std::vector<Entity> seen_;

@@ -139,10 +139,10 @@ class EpisodeReader {
       return Report("the recording has no frames",
                     "each line after the first is one: {\"tick\": 0, ...}");
     if (!episode.says_its_end) episode.end_tick = episode.frames.back().tick + 1;
-    episode.gaps = Gaps();
+    episode.gaps = Gaps(episode.end_tick);
   }
 
-  std::vector<LookGaps> Gaps() const { return bridge_.Gaps(); }
+  std::vector<LookGaps> Gaps(grammar::Tick end) const { return bridge_.Gaps(end); }
 
   void Report(std::string message, std::string hint) {
     diagnostics.push_back({.file = file_,
@@ -511,14 +511,14 @@ grammar::Frame EpisodeFrame::View() {
 }
 
 void BridgeLooks(Recording& episode) {
-  const auto bridged = [fresh = BridgeOf(episode.header),
+  const auto bridged = [fresh = BridgeOf(episode.header), end_tick = episode.end_tick,
                         bare = std::move(episode.play)](const Recording::Look& look) {
     GapTolerance bridge = fresh;
     bare([&](EpisodeFrame& frame) {
       bridge.Fill(frame.tick, frame.entities);
       look(frame);
     });
-    return bridge.Gaps();
+    return bridge.Gaps(end_tick);
   };
   episode.gaps = bridged([](EpisodeFrame&) {});
   episode.play = bridged;
@@ -554,7 +554,7 @@ void EpisodeStream::DoubtFrames(double ahead_s) { reader_->lines.most_ahead_s = 
 bool EpisodeStream::has_header() const { return reader_->lines.has_header(); }
 const EpisodeHeader& EpisodeStream::header() const { return reader_->lines.episode.header; }
 std::string EpisodeStream::gaps() const {
-  return has_header() ? GapsText(header().entity_table, reader_->lines.Gaps()) : "";
+  return has_header() ? GapsText(header().entity_table, reader_->lines.Gaps(end_tick())) : "";
 }
 bool EpisodeStream::says_its_end() const { return reader_->lines.episode.says_its_end; }
 grammar::Tick EpisodeStream::end_tick() const {
