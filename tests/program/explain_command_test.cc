@@ -34,6 +34,9 @@ TEST(ExplainCommand, AScenarioAndItsRecordingAreExplainedAlike) {
   EXPECT_TRUE(
       missing["because"].get<std::string>().starts_with("requires rise(milk) >= lift_rise: is "))
       << missing;
+  const auto& decisive = missing["decisive"];
+  const double instead = decisive["instead"], limit = decisive["limit"];
+  EXPECT_NEAR(decisive["share"].get<double>(), 1 - instead / limit, 1e-12) << decisive;
 }
 
 TEST(ExplainCommand, WhatIsExpectedAndThereIsExplained) {

@@ -53,7 +53,7 @@ struct Decisive {
   double limit = 0;
   double instead = 0;  ///< would have been enough
   grammar::Dimension dimension;
-  double share = 0;  ///< of the larger of the two
+  double share = 0;  ///< of the larger of the two, before `instead` was rounded
 };
 
 /// Why an event that happened began, ended, counted and was known as late as it was.

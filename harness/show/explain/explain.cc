@@ -170,17 +170,19 @@ std::string Late(const WhyEvent& why, Tick ticks_per_second) {
 
 void AddTo(Json& json, const std::optional<Decisive>& decisive) {
   if (!decisive) return;
-  json["decisive"] = decisive->clause.empty()
-                         ? Json(nullptr)
-                         : Json{{"clause", decisive->clause},
-                                {"rule", decisive->rule},
-                                {"at", decisive->where},
-                                {"limit", decisive->limit},
-                                {"instead", decisive->instead},
-                                {"unit", decisive->dimension == grammar::kPlain
-                                             ? ""
-                                             : grammar::DimensionText(decisive->dimension)},
-                                {"share", decisive->share}};
+  json["decisive"] =
+      decisive->clause.empty()
+          ? Json(nullptr)
+          : Json{{"clause", decisive->clause},
+                 {"rule", decisive->rule},
+                 {"at", decisive->where},
+                 {"limit", decisive->limit},
+                 {"instead", decisive->instead},
+                 {"unit", decisive->dimension == grammar::kPlain
+                              ? ""
+                              : grammar::DimensionText(decisive->dimension)},
+                 {"share", std::abs(decisive->instead - decisive->limit) /
+                               std::max(std::abs(decisive->instead), std::abs(decisive->limit))}};
 }
 
 std::string Sentence(const std::optional<Decisive>& decisive, const char* what) {
