@@ -168,8 +168,10 @@ bool HoldsItself(const CheckedRun& run) {
 void AddCause(const PossibleCauses& possible, const std::string& because,
               ScenarioVerdict& verdict) {
   verdict.cause += ChangesText(possible.changes);
-  verdict.attributions.push_back(
-      {.event = {}, .what = verdict.reason, .because = because, .question = {}});
+  verdict.attributions.push_back({.event = {},
+                                  .what = verdict.reason.empty() ? kPictureDiffers : verdict.reason,
+                                  .because = because,
+                                  .question = {}});
 }
 
 }  // namespace

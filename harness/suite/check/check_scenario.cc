@@ -398,16 +398,16 @@ ScenarioVerdict VerdictOn(CheckedEpisode checked) {
     checked.is_good = findings.empty();
   }
   Conclude(findings, verdict);
-  if (verdict.verdict == Verdict::kFailed && verdict.attributions.empty() && !checked.recording &&
-      !checked.heard)
+  const bool is_run = !checked.recording && !checked.heard;
+  if (is_run && checked.IsComplete())
+    verdict.picture_differences = PictureDifferencesText(
+        checked.pictures, request.IsAsItsFileSays() ? AcceptPicturesCommand(request.id) : "");
+  const bool differs = verdict.verdict == Verdict::kFailed || !verdict.picture_differences.empty();
+  if (differs && verdict.attributions.empty() && is_run)
     AttributeFailure(request, checked.run, verdict);
   for (std::string* text : {&verdict.reason, &verdict.details}) Shorten(*text, request.root);
   verdict.details += truth::TextOfUndecided(verdict.claims);
-  if (!checked.recording && !checked.heard && checked.IsComplete()) {
-    Store(checked);
-    verdict.picture_differences = PictureDifferencesText(
-        checked.pictures, request.IsAsItsFileSays() ? AcceptPicturesCommand(request.id) : "");
-  }
+  if (is_run && checked.IsComplete()) Store(checked);
   verdict.command = NextCommand(checked);
   AddPictures(checked);
   return std::move(verdict);

@@ -151,7 +151,7 @@ ScenarioVerdict JudgedByPictures(ScenarioVerdict verdict) {
   if (verdict.verdict == Verdict::kFailed || verdict.verdict == Verdict::kFlaky) return verdict;
   verdict.verdict = Verdict::kFailed;
   verdict.exit_code = ExitCode::kDiffers;
-  verdict.reason = "a picture differs from its golden";
+  verdict.reason = kPictureDiffers;
   return verdict;
 }
 

@@ -58,6 +58,9 @@ struct Labelled {
   std::vector<std::pair<double, grammar::NamedEvent>> moments = {};  ///< labels, with seconds
 };
 
+/// The reason of what passes but for a picture.
+inline constexpr const char* kPictureDiffers = "a picture differs from its golden";
+
 struct ScenarioVerdict {
   std::string scenario;  ///< skill/name
   std::string file;      ///< what was checked

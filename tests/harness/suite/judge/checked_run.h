@@ -35,7 +35,7 @@ class CheckedScenario : public testing::Test {
   ~CheckedScenario() override { std::filesystem::remove_all(root_); }
 
   std::string Write(const std::string& file, const std::string& text) const {
-    EXPECT_EQ(WriteTextFile(root_ / file, text), "");
+    EXPECT_EQ(WriteTextFile(root_ / file, text, Over::kAnything), "");
     return (root_ / file).string();
   }
 
