@@ -72,8 +72,10 @@ std::vector<CsvCell> CsvCellsOf(std::string_view line, char separator) {
   for (std::size_t begin = 0; begin <= line.size();) {
     std::size_t end = std::min(line.find(separator, begin), line.size());
     std::string_view fault;
-    if (begin < line.size() && line[begin] == '"') {
-      const std::size_t quote = ClosingQuote(line, begin);
+    const std::size_t open = line.find_first_not_of(' ', begin);
+    std::size_t quote = std::string_view::npos;
+    if (open != std::string_view::npos && line[open] == '"') {
+      quote = ClosingQuote(line, open);
       if (quote == std::string_view::npos) {
         fault = "its quote is not closed";
       } else {
@@ -83,9 +85,10 @@ std::vector<CsvCell> CsvCellsOf(std::string_view line, char separator) {
           fault = "there is more after its closing quote";
       }
     }
-    std::size_t first = begin, last = end;
-    while (first < last && (line[first] == ' ' || line[first] == '"')) ++first;
-    while (last > first && (line[last - 1] == ' ' || line[last - 1] == '"')) --last;
+    const bool in_quotes = quote != std::string_view::npos && fault.empty();
+    std::size_t first = in_quotes ? open + 1 : begin, last = in_quotes ? quote : end;
+    while (first < last && (line[first] == ' ' || (line[first] == '"' && !fault.empty()))) ++first;
+    while (last > first && line[last - 1] == ' ') --last;
     cells.push_back({line.substr(first, last - first), static_cast<int>(first) + 1, fault});
     begin = end + 1;
   }

@@ -6,11 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <map>
 #include <optional>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "harness/base/base/number_text.h"
 #include "harness/base/base/quoting.h"
@@ -38,19 +40,22 @@ struct TimeCell {
 std::optional<TimeCell> TimeIn(std::string_view text) {
   if (const std::optional<double> date_s = episode::SecondsOfDate(text))
     return TimeCell{*date_s, true};
-  TimeCell time;
+  TimeCell time{.is_clock = text.find(':') != std::string_view::npos};
+  // The sign is of the whole: -0:02 is two seconds before 0:00.
+  const double sign = time.is_clock && text.starts_with('-') ? -1 : 1;
+  if (time.is_clock && (sign < 0 || text.starts_with('+'))) text.remove_prefix(1);
+  if (time.is_clock && text.find_first_of("+-") != std::string_view::npos) return std::nullopt;
   int parts = 0;
   for (std::size_t colon = text.find(':'); colon != std::string_view::npos;
        colon = text.find(':'), ++parts) {
     const std::optional<double> part = NumberIn(text.substr(0, colon));
-    if (!part || *part < 0 || *part != std::floor(*part) || parts == 2) return std::nullopt;
+    if (!part || *part != std::floor(*part) || parts == 2) return std::nullopt;
     time.number = 60 * (time.number + *part);
     text.remove_prefix(colon + 1);
   }
-  time.is_clock = parts > 0;
   const std::optional<double> rest = NumberIn(text);
-  if (!rest || (time.is_clock && (*rest < 0 || *rest >= 60))) return std::nullopt;
-  time.number += *rest;
+  if (!rest || (time.is_clock && *rest >= 60)) return std::nullopt;
+  time.number = sign * (time.number + *rest);
   return time;
 }
 
@@ -282,6 +287,7 @@ class RowTaker {
     for (const auto& [_, begun] : begun_)
       Complain(begun.place.column, fmt::format("'{}' begins and never ends", begun.text),
                begun.place.line);
+    if (columns_.InFrames()) JoinFrames();
     if (columns_.InFrames() && is_each_frame_ && columns_.keys.empty()) {
       file_.frames_s = (last_frame_ + 1) * columns_.frame->unit_s;
       file_.rate_hz = 1 / columns_.frame->unit_s;
@@ -388,15 +394,24 @@ class RowTaker {
     if (label.text.empty()) return;  // nothing happens in this frame
     label.begin_s = *frame * columns_.frame->unit_s;
     label.end_s = (*frame + 1) * columns_.frame->unit_s;
-    const auto [at, is_new] = last_.try_emplace(Same(label), *frame, file_.labels.size());
-    auto& [last, index] = at->second;
-    if (!is_new && *frame >= last && *frame <= last + 1) {
-      file_.labels[index].end_s = label.end_s;
-    } else {
-      index = file_.labels.size();
-      file_.labels.push_back(std::move(label));
+    file_.labels.push_back(std::move(label));
+  }
+
+  /// Rows need not be in the order of the frames.
+  void JoinFrames() {
+    std::ranges::stable_sort(file_.labels, {}, &Label::begin_s);
+    std::vector<Label> joined;
+    std::map<SameLabel, std::size_t> last;
+    for (Label& label : file_.labels) {
+      const auto [at, is_new] = last.try_emplace(Same(label), joined.size());
+      if (!is_new && label.begin_s <= joined[at->second].end_s) {
+        joined[at->second].end_s = label.end_s;
+        continue;
+      }
+      at->second = joined.size();
+      joined.push_back(std::move(label));
     }
-    last = *frame;
+    file_.labels = std::move(joined);
   }
 
   LabelFile& file_;
@@ -404,7 +419,6 @@ class RowTaker {
   const std::vector<std::string> words_;
   std::vector<std::set<std::string>> cells_of_;  ///< per column, of those that may tell takes: two
   std::map<SameLabel, Label> begun_;
-  std::map<SameLabel, std::pair<double, std::size_t>> last_;  ///< frame, and index of its label
   double last_frame_ = 0;
   bool is_each_frame_ = true;  ///< none is left out
   Diagnostics problems_;
@@ -416,6 +430,44 @@ char SeparatorOf(std::string_view line) {
     if (line.find(',') == std::string_view::npos && line.find(other) != std::string_view::npos)
       return other;
   return ',';
+}
+
+/// Of two quotes in a cell in quotes one stays; `own` keeps such texts.
+std::vector<CsvCell> CellsOf(std::string_view row, char separator, std::deque<std::string>& own) {
+  std::vector<CsvCell> cells = CsvCellsOf(row, separator);
+  for (CsvCell& cell : cells) {
+    const std::string_view before = row.substr(0, cell.text.data() - row.data());
+    const std::size_t open = before.find_last_not_of(' ');
+    if (open == std::string_view::npos || before[open] != '"') continue;
+    std::string& whole = own.emplace_back(cell.text);
+    for (std::size_t at = whole.find("\"\""); at != std::string::npos;
+         at = whole.find("\"\"", at + 1))
+      whole.erase(at, 1);
+    cell.text = whole;
+  }
+  return cells;
+}
+
+bool IsFaulty(const CsvCell& cell) { return !cell.fault.empty(); }
+
+/// Of the row that begins there, and ends at `end` if no cell in quotes goes on in a later line.
+std::vector<CsvCell> RowAt(std::string_view text, std::size_t begin, char separator,
+                           std::size_t& end, std::deque<std::string>& own) {
+  constexpr int kMostLines = 100;  // with quotes
+  std::vector<CsvCell> cells = CellsOf(text.substr(begin, end - begin), separator, own);
+  const int last_column = static_cast<int>(end - begin) + 1;
+  std::size_t at = end;
+  for (int i = 0; i < kMostLines && std::ranges::any_of(cells, IsFaulty); ++i) {
+    const std::size_t quote = text.find('"', at);
+    if (quote == std::string_view::npos) break;
+    at = std::min(text.find('\n', quote), text.size());
+    std::vector<CsvCell> longer = CellsOf(text.substr(begin, at - begin), separator, own);
+    if (std::ranges::any_of(longer, IsFaulty)) continue;
+    end = at;
+    for (CsvCell& cell : longer) cell.column = std::min(cell.column, last_column);
+    return longer;
+  }
+  return cells;
 }
 
 }  // namespace
@@ -431,17 +483,18 @@ Diagnostics ReadCsvLabels(LabelFile& file, const CsvReading& how) {
   char separator = ',';
   const std::string_view text = file.text;
   const bool has_no_header = IsLabelTrack(text);
+  std::deque<std::string> own;
   int line_number = 0;
   for (std::size_t begin = 0; begin < text.size() && !(rows && rows->IsFull());) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    std::size_t end = std::min(text.find('\n', begin), text.size());
     const std::string_view line = text.substr(begin, end - begin);
-    begin = end + 1;
+    const std::size_t row = std::exchange(begin, end + 1);
     if (++line_number == 1) {
       const bool has_tabs = has_no_header || LowerCase(file.file).ends_with(".tsv");
       separator = has_tabs ? '\t' : SeparatorOf(line);
       std::vector<std::string> words;
       const std::string_view head = has_no_header ? "begin_s\tend_s\tlabel" : line;
-      for (const CsvCell& cell : CsvCellsOf(head, separator)) words.emplace_back(cell.text);
+      for (const CsvCell& cell : CellsOf(head, separator, own)) words.emplace_back(cell.text);
       PREHEND_TRY(CsvColumns known, ColumnFinder(file, words, how).Find());
       width = words.size();
       rows.emplace(file, std::move(known), std::move(words));
@@ -451,9 +504,9 @@ Diagnostics ReadCsvLabels(LabelFile& file, const CsvReading& how) {
     if (line.find_first_not_of(" \t") == std::string_view::npos ||
         (has_no_header && line.starts_with('\\')))
       continue;
-    const std::vector<CsvCell> cells = CsvCellsOf(line, separator);
-    const auto faulty =
-        std::ranges::find_if(cells, [](const CsvCell& cell) { return !cell.fault.empty(); });
+    const std::vector<CsvCell> cells = RowAt(text, row, separator, end, own);
+    begin = end + 1;
+    const auto faulty = std::ranges::find_if(cells, IsFaulty);
     if (faulty != cells.end())
       rows->Complain(faulty->column, fmt::format("the cell '{}': {}", faulty->text, faulty->fault),
                      line_number);
@@ -461,6 +514,7 @@ Diagnostics ReadCsvLabels(LabelFile& file, const CsvReading& how) {
       rows->Complain(1, fmt::format("found {} cells, wanted {}", cells.size(), width), line_number);
     else
       rows->Take(cells, line_number);
+    line_number += static_cast<int>(std::ranges::count(text.substr(row, end - row), '\n'));
   }
   return rows ? rows->Finish() : Diagnostics{};
 }
@@ -471,7 +525,8 @@ std::vector<std::string> HeadOfTable(const std::string& path) {
   if (!text) return words;
   const std::string_view line = std::string_view(*text).substr(0, text->find('\n'));
   const char separator = LowerCase(path).ends_with(".tsv") ? '\t' : SeparatorOf(line);
-  for (const CsvCell& cell : CsvCellsOf(line, separator)) words.emplace_back(cell.text);
+  std::deque<std::string> own;
+  for (const CsvCell& cell : CellsOf(line, separator, own)) words.emplace_back(cell.text);
   return words;
 }
 

@@ -22,6 +22,8 @@ TEST(CsvCells, AreCutAtSeparatorsOutsideOfQuotes) {
   EXPECT_EQ(Texts(""), (V{""}));
   EXPECT_EQ(Texts("a,"), (V{"a", ""}));
   EXPECT_EQ(Texts("\"open, end"), (V{"open", "end"}));
+  EXPECT_EQ(Texts("a , \"b, c\" ,d"), (V{"a", "b, c", "d"}));
+  EXPECT_EQ(Texts("say \"a\",\"\"\"b\"\"\",\"\""), (V{"say \"a\"", "\"\"b\"\"", ""}));
 }
 
 TEST(CsvCells, KnowTheirPlace) {

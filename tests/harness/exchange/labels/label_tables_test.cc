@@ -117,6 +117,9 @@ TEST_F(LabelTables, FramesOneAfterAnotherAreOneLabel) {
             "[right]; ");
   EXPECT_EQ(Read("a.txt", "SIL\nreach\nreach\n\nreach\n", how),
             "0..0.1 SIL; 0.1..0.3 reach; 0.4..0.5 reach; ");
+  // In any order.
+  EXPECT_EQ(Read("a.csv", "frame,label\n12,A\n10,A\n14,A\n11,B\n11,A\n12,A\n", how),
+            "1..1.3 A; 1.1..1.2 B; 1.4..1.5 A; ");
   EXPECT_EQ(Read("a.csv", "nr,what\n7,x\n8,x\n", {.label = "what", .frame = "nr", .rate_hz = 100}),
             "0.07..0.09 x; ");
   EXPECT_TRUE(StartsWith(Read("a.csv", "frame,label\n1.5,x\n", how),
@@ -128,6 +131,15 @@ TEST_F(LabelTables, FramesOneAfterAnotherAreOneLabel) {
 
 TEST_F(LabelTables, TimesHaveSignsAndDates) {
   EXPECT_EQ(Read("a.csv", "begin,end,label\n+0.5000,+1,hold\n"), "0.5..1 hold; ");
+  // The sign of a clock is that of all of it, also before a zero.
+  EXPECT_EQ(Read("a.csv",
+                 "begin,end,label\n-0:02,0:03,a\n-0:00.5,+0:01,b\n-00:00:00.500,0:00,c\n"
+                 "-0:01:00,-0:00:30,d\n-1:02,-1,e\n-1:00:00,-0:59:59.25,f\n"),
+            "-2..3 a; -0.5..1 b; -0.5..0 c; -60..-30 d; -62..-1 e; -3600..-3599.25 f; ");
+  for (const char* none : {"--0:02", "-+0:02", "0:-02", "-0:-02", "1:+02", "0:-0:01", "-0:61", "-"})
+    EXPECT_TRUE(StartsWith(Read("a.csv", std::string("begin,end,label\n") + none + ",9,hold\n"),
+                           std::string("2:1 begin: found '") + none + "'"))
+        << none;
   const Result<LabelFile> file =
       File("a.csv", "begin,end,label\n2026-10-25T01:59:57.250,2026-10-25 02:00:01Z,hold\n", {});
   ASSERT_TRUE(file);
@@ -141,6 +153,25 @@ TEST_F(LabelTables, TimesHaveSignsAndDates) {
         "2026-10-25T00:60:00", "2026-10-25T00:00:00+x", "26-10-25T00:00:00", "2026-10-25T00:00",
         "1.5", "", "2026-10-25T00:00:-1"})
     EXPECT_FALSE(episode::SecondsOfDate(none)) << none;
+}
+
+// RFC 4180, as spreadsheets write it.
+TEST_F(LabelTables, CellsInQuotesHaveQuotesAndLineBreaks) {
+  const std::string head = "begin,end,label,tier\n";
+  EXPECT_EQ(Read("a.csv", head + "1,2,\"A \"\"x\"\" y\",\"a \"\"b\"\"\"\n"),
+            "1..2 A \"x\" y [a \"b\"]; ");
+  EXPECT_EQ(Read("a.csv", head + "1,2,\"\"\"x\"\"\",5\"\n1,2,say \"\"x\"\",y\n"),
+            "1..2 \"x\" [5\"]; 1..2 say \"\"x\"\" [y]; ");
+  EXPECT_EQ(Read("a.csv", "\"begin \"\"s\"\"\",end,label\n1,2,x\n", {.begin = "begin \"s\""}),
+            "1..2 x; ");
+  const std::string note = "note,begin,end,label\n\"two\n\"\"lines\"\"\n, and\n\",1,2,x\n";
+  EXPECT_EQ(Read("a.csv", note + "\"\n\",2,3,\"y\nz\"\nn,3,4,x\n"), "1..2 x; 2..3 y\nz; 3..4 x; ");
+  // Places count lines, and a quote that is not closed is that of its row alone.
+  EXPECT_TRUE(StartsWith(Read("a.csv", note + "n,two,3,x\n"), "6:3 begin: found 'two'"));
+  for (const char* more : {"", "n,2,3,x\n", "n,2,3,\"x\"\n"})
+    EXPECT_TRUE(StartsWith(Read("a.csv", "note,begin,end,label\n\"n,1,2,x\n" + std::string(more)),
+                           "2:2 the cell 'n': its quote is not closed"))
+        << more;
 }
 
 TEST_F(LabelTables, ColumnsThatTellTakesAreNoticed) {
