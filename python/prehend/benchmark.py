@@ -182,7 +182,7 @@ def summary(counts, result, cpu_s, resamples, first, asks):
     for side, errors in (("begin", counts.begin_ms), ("end", counts.end_ms)):
         row[f"{side}_ms"] = [round(float(np.percentile(np.abs(errors), q)), 1) for q in (50, 95)] if errors else None
     late = result["total"]["latency_s"]
-    row["late_ms"] = round(1000 * late["median"], 1) if late["max"] else None
+    row["late_ms"] = None if late["median"] is None else round(1000 * late["median"], 1)
     row["cpu_s_per_s"] = round(cpu_s / (60 * minutes), 4)
     row["asks"] = {}
     for question in sorted({one for some in asks for one in some}):

@@ -145,7 +145,7 @@ class Grammar:
             scores, strange = _prehend.score(self._compiled, compared, str(map or ""), collar_s)
         warn(labelled.as_called(strange), DoubtfulLabels)
         scores = json.loads(scores)
-        return pd.json_normalize(scores["events"] + [scores["total"]], sep="_").set_index("event")
+        return pd.json_normalize(scores["events"] + [scores["total"]], sep="_").set_index("event").apply(pd.to_numeric)  # null: NaN
 
     def margins(self, episodes_, truth, map=None, over=(), within: float = 0.01) -> pd.DataFrame:  # pylint: disable=redefined-builtin
         """How far each parameter may be from its value before the score drops.

@@ -178,7 +178,8 @@ PrecisionRecall PurityAndCoverage(const Episode& episode) {
 IntersectionScore ScoreByIntersection(const Episode& episode, double ticks_per_second) {
   std::set<std::string> labels;
   for (const Segment& one : episode.truth) labels.insert(one.label);
-  if (labels.empty()) return {};
+  if (labels.empty())
+    return episode.prediction.empty() ? IntersectionScore{} : IntersectionScore{0, 0};
   const double hours = static_cast<double>(episode.ticks) / ticks_per_second / 3600;
   IntersectionScore sum{0, 0};
   for (const std::string& label : labels) {
@@ -214,8 +215,8 @@ FurtherScores ScoreFurther(const std::vector<LabelledEpisode>& episodes, double 
   scores.pairwise_f1 = pairwise.Or(1);
   scores.purity = purity.Or(1);
   scores.coverage = coverage.Or(1);
-  scores.deviation_from_truth_s = from_truth_s.Or(0);
-  scores.deviation_from_found_s = from_found_s.Or(0);
+  scores.deviation_from_truth_s = from_truth_s.Or(NAN);
+  scores.deviation_from_found_s = from_found_s.Or(NAN);
   const IntersectionScore chained = ScoreByIntersection(Chained(episodes, all_s), kMicrosPerS);
   scores.intersection_f1 = chained.macro_f1;
   scores.psds = chained.psds;

@@ -50,8 +50,8 @@ struct IntersectionScore {
   double psds = 1;
 };
 
-/// Both are 1 without truth. Predictions whose label the truth does not have are ignored (psds_eval
-/// refuses them).
+/// Without truth both are 1 if nothing is predicted, either, else 0. Predictions whose label the
+/// truth does not have are ignored (psds_eval refuses them).
 IntersectionScore ScoreByIntersection(const Episode& episode, double ticks_per_second);
 
 /// All of them, over the episodes in which an event is true or found. Labels are events with their
@@ -62,7 +62,7 @@ struct FurtherScores {
   /// Means over the labels of the episodes.
   double pairwise_f1 = 1, purity = 1, coverage = 1;
   /// Distance of a label's boundaries to the nearest one of the other side, in seconds: the median,
-  /// averaged over the labels that both sides have.
+  /// averaged over the labels that both sides have; no numbers if there are none.
   double deviation_from_truth_s = 0, deviation_from_found_s = 0;
   /// Of all episodes, concatenated.
   double intersection_f1 = 1, psds = 1;

@@ -20,9 +20,11 @@ constexpr double kMsPerS = 1000;
 
 std::string Percent(double share) { return fmt::format("{:.1f}", 100 * share); }
 
+long Ms(double seconds) { return std::lround(kMsPerS * seconds); }
+
 /// "+12", "-3", and "0" without a sign.
 std::string SignedMs(double seconds) {
-  const long ms = std::lround(kMsPerS * seconds);
+  const long ms = Ms(seconds);
   return ms == 0 ? "0" : fmt::format("{:+}", ms);
 }
 
@@ -75,10 +77,10 @@ Row RowOf(const EventScore& s) {
           fmt::format("{:.1f}", s.edit),
           Percent(s.frames.Accuracy()),
           Percent(s.within_collar.AsHits().F1()),
-          s.late.seconds.empty() ? "-"
-                                 : fmt::format("{:.0f}/{:.0f}/{:.0f}", kMsPerS * s.late.Median(),
-                                               kMsPerS * s.late.QuantileByMagnitude(0.95),
-                                               kMsPerS * s.late.QuantileByMagnitude(1))};
+          s.late.seconds.empty()
+              ? "-"
+              : fmt::format("{}/{}/{}", Ms(s.late.Median()), Ms(s.late.QuantileByMagnitude(0.95)),
+                            Ms(s.late.QuantileByMagnitude(1)))};
 }
 
 /// "mean": of the kinds of events above it.
@@ -159,7 +161,9 @@ std::string MomentsText(const Score& score) {
 
 using Json = nlohmann::ordered_json;
 
+/// Null where the table has "-", as are numbers that are none.
 Json TimeJson(const TimeErrors& errors) {
+  if (errors.seconds.empty()) return {{"median", nullptr}, {"p95", nullptr}, {"max", nullptr}};
   return {{"median", errors.Median()},
           {"p95", errors.QuantileByMagnitude(0.95)},
           {"max", errors.QuantileByMagnitude(1)}};

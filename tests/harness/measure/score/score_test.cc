@@ -75,5 +75,23 @@ TEST(ScoreOf, FurtherScoresAreFullForTheTruthAndFallWithEveryMistake) {
   EXPECT_EQ(invented.psds, 0) << "one false event in 10 s are 360 in an hour";
 }
 
+TEST(ScoreOf, WhereNothingIsTrueWhatIsFoundIsNoSuccess) {
+  const Score nothing = ScoreOf("g", {Episode({}, {})}, 0.05),
+              wrong = ScoreOf("g", {Episode({}, {Event("slide", 100, 300, -1)})}, 0.05);
+  for (const auto& [score, share] : {std::pair{nothing, 1}, std::pair{wrong, 0}}) {
+    const FurtherScores& further = score.total.further;
+    for (const double one : {further.map_50, further.intersection_f1, further.psds})
+      EXPECT_EQ(one, share);
+  }
+  // No numbers are null.
+  const auto total = ScoresJson({wrong}, 0.05)["grammars"][0]["total"];
+  for (const char* times : {"begin_s", "end_s", "latency_s"})
+    for (const char* figure : {"median", "p95", "max"})
+      EXPECT_TRUE(total[times][figure].is_null()) << times << figure;
+  // As it is written: NaN is null.
+  EXPECT_EQ(total["further"]["boundary_deviation_s"].dump(),
+            R"({"from_truth":null,"from_found":null})");
+}
+
 }  // namespace
 }  // namespace prehend::measure
