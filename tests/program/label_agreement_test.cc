@@ -101,6 +101,10 @@ TEST_F(Agreement, KappaIsOfFrames) {
   const Said text = Prehend({"score", ben, "--truth", anna});
   EXPECT_NE(text.out.find("kappa of frames: hold 0.60, rest 1.00, all "), std::string::npos)
       << text.out;
+  const Said hardly = Prehend({"score", File("c.csv", "5,6,hold,right\n6,6.01,rest,right\n"),
+                               "--truth", File("d.csv", "0,0.01,hold,right\n6,6.01,rest,right\n")});
+  EXPECT_NE(hardly.out.find("kappa of frames: hold 0.00, rest 1.00"), std::string::npos)
+      << hardly.out;
 }
 
 TEST_F(Agreement, OtherFormatsAndAMapDo) {
@@ -135,6 +139,11 @@ TEST_F(Agreement, TwoPeopleInOneFileAreNotTakenForOne) {
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_NE(refused.err.find("the column 'coder' has several values"), std::string::npos)
       << refused.err;
+  WriteFile(both, "video,coder,begin_s,end_s,label\nP1,anna,0,1,hold\nP2,ben,0.1,1.1,hold\n");
+  const Said two = Prehend({"score", both, "--truth", both});
+  EXPECT_NE(two.err.find("the columns 'video' and 'coder' have several values, and nothing says"),
+            std::string::npos)
+      << two.err;
 }
 
 }  // namespace

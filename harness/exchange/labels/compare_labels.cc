@@ -25,9 +25,11 @@ std::string Trimmed(std::string_view text) {
 grammar::Diagnostic SeveralTakes(const LabelFile& file, const std::string& take) {
   return file.At(
       {1, 1},
-      fmt::format("the column '{}' has several values, and nothing says which rows are "
-                  "of '{}'",
-                  fmt::join(file.several, "' and '"), take),
+      fmt::format("the {} several values, and nothing says which rows are of '{}'",
+                  file.several.size() == 1
+                      ? fmt::format("column '{}' has", file.several.front())
+                      : fmt::format("columns '{}' have", fmt::join(file.several, "' and '")),
+                  take),
       fmt::format("in the map columns: {{take: {0}}}, if recordings are called as in it; "
                   "or rows: {{{0}: VALUE}} in a file of takes; or columns: {{take: "
                   "ignore}}",

@@ -184,7 +184,11 @@ class MapReader {
 
   bool IsMapping(const YamlNode& node) {
     if (node.kind == YamlNode::Kind::kMapping && !node.children.empty()) return true;
-    errors_.Add(node.where, node.key + ": expected a mapping, found " + Describe(node), kExample);
+    errors_.Add(
+        node.where,
+        fmt::format("{}: expected a mapping, found {}", node.key,
+                    node.kind == YamlNode::Kind::kMapping ? "an empty one" : Describe(node)),
+        kExample);
     return false;
   }
 

@@ -102,8 +102,12 @@ std::optional<double> TimeIn(const json& line, const std::string& name, double t
   if (tick != line.end() && (ticks_per_second > 0 || seconds == line.end())) {
     if (tick->is_number_integer() && ticks_per_second > 0)
       return tick->get<double>() / ticks_per_second;
-    problem = fmt::format("{}_tick: found {}, wanted a whole number{}", name, tick->dump(),
-                          ticks_per_second > 0 ? "" : "; no recording says how long a tick is");
+    problem = ticks_per_second > 0
+                  ? fmt::format("{}_tick: found {}, wanted a whole number", name, tick->dump())
+                  : fmt::format(
+                        "{0}_tick: ticks are read only of what is --found; wanted {0}_s, "
+                        "in seconds",
+                        name);
   } else if (seconds != line.end()) {
     if (seconds->is_number()) return seconds->get<double>();
     problem = fmt::format("{}_s: found {}, wanted seconds", name, seconds->dump());
@@ -511,6 +515,9 @@ grammar::Diagnostics ReadJsonLabels(LabelFile& file, double ticks_per_second) {
   grammar::Diagnostics problems;
   const std::string_view text = file.text;
   int number = 0;
+  const char* const event =
+      ticks_per_second > 0 ? R"({"event": "NAME", "roles": {..}, "begin_tick": N, "end_tick": N})"
+                           : R"({"event": "NAME", "roles": {..}, "begin_s": S, "end_s": S})";
   for (std::size_t begin = 0; begin < text.size() && problems.size() < kMostComplaints;) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     const json line = json::parse(text.substr(begin, end - begin), nullptr, false);
@@ -518,8 +525,7 @@ grammar::Diagnostics ReadJsonLabels(LabelFile& file, double ticks_per_second) {
         text.substr(begin, end - begin).find_first_not_of(" \t") == std::string_view::npos;
     begin = end + 1;
     Label label{.place = {++number, 1}, .roles = {}};
-    std::string problem,
-        wanted = R"({"event": "NAME", "roles": {..}, "begin_tick": N, "end_tick": N})";
+    std::string problem, wanted = event;
     if (is_blank) continue;
     if (!line.is_object()) {
       problem = "it is no JSON object";

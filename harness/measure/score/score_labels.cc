@@ -337,10 +337,13 @@ std::string LabelScoresText(const LabelScores& scores, double collar_s, bool dif
   std::string text = ScoresText(scores.of_grammars, collar_s);
   if (scores.of_people) {
     const Score& score = scores.of_grammars.front();
+    const auto kappa = [](const EventScore& event) {
+      return std::round(100 * event.frames.Kappa()) / 100 + 0.0;  // no -0
+    };
     text += "kappa of frames:";
     for (const EventScore& event : score.events)
-      text += fmt::format(" {} {:.2f},", event.event, event.frames.Kappa());
-    text += fmt::format(" all {:.2f}\n", score.total.frames.Kappa());
+      text += fmt::format(" {} {:.2f},", event.event, kappa(event));
+    text += fmt::format(" all {:.2f}\n", kappa(score.total));
     std::map<std::string, TimeErrors> boundaries;  // 95 % of these are at most so far apart
     for (const EventScore& event : score.events)
       for (const TimeErrors* errors : {&event.begin, &event.end})

@@ -461,9 +461,18 @@ TEST_F(Labels, WhatIsFoundIsComparedInTheRolesOfTheLabels) {
   EXPECT_EQ(ByHand(found, {}).events[0].event, "reaching of right_hand");
 }
 
+TEST_F(Labels, TicksAreOnlyOfWhatIsFound) {
+  EXPECT_EQ(Problem("a.jsonl", "{\"event\": \"x\", \"begin_tick\": 1, \"end_tick\": 2}\n"),
+            "a.jsonl:1:1: error: end_tick: ticks are read only of what is --found; wanted end_s, "
+            "in seconds");
+  EXPECT_EQ(Read("a.jsonl", "{\"event\": \"x\", \"begin_s\": 1, \"end_s\": 2}\n"), "1..2 x; ");
+}
+
 TEST_F(Labels, FaultyMapsAreNamed) {
   EXPECT_EQ(MapProblem("labels: 3\n"),
             "map.yaml:1:9: error: labels: expected a mapping, found '3'");
+  EXPECT_EQ(MapProblem("tiers: {N: {}}\nlabels:\n  a: ignore\n"),
+            "map.yaml:1:12: error: N: expected a mapping, found an empty one");
   EXPECT_EQ(MapProblem("label:\n  a: ignore\n"), "map.yaml:1:1: error: unknown key 'label'");
   EXPECT_EQ(MapProblem("version: 2\nlabels:\n  a: ignore\n"),
             "map.yaml:1:10: error: version: expected 1, the version of this format, found '2'");
