@@ -212,9 +212,10 @@ const Meaning* TierOf(const Label& label, const LabelMap* map) {
   return tier == map->tiers.end() ? nullptr : &tier->second;
 }
 
-/// The labels of a take; those of tiers that are roles of others are in these.
+/// The labels of a take; those of tiers that are roles of others are in these, and a warning says
+/// how many are not.
 std::vector<Label> LabelsOf(const LabelFile& file, const TakeRows& take, const LabelMap* map,
-                            Diagnostics& problems) {
+                            Diagnostics& problems, std::string& warnings) {
   std::vector<Label> labels, children;
   for (const std::size_t index : take.labels) {
     const Label& label = file.labels[index];
@@ -227,18 +228,38 @@ std::vector<Label> LabelsOf(const LabelFile& file, const TakeRows& take, const L
     const auto parent = std::ranges::find_if(labels, [&](const Label& label) {
       return label.tier == tier.of && label.begin_s <= middle_s && middle_s <= label.end_s;
     });
-    if (parent != labels.end())
-      parent->roles.push_back({tier.role, Trimmed(child.text)});
-    else if (problems.size() < kMostComplaints)
-      problems.push_back(file.At(child.place, fmt::format("the tier '{}' has no label here whose "
-                                                          "{} '{}' could be",
-                                                          tier.of, tier.role, child.text)));
+    if (parent == labels.end()) {
+      if (problems.size() < kMostComplaints)
+        problems.push_back(file.At(child.place, fmt::format("the tier '{}' has no label here whose "
+                                                            "{} '{}' could be",
+                                                            tier.of, tier.role, child.text)));
+      continue;
+    }
+    const std::string value = Trimmed(child.text);
+    const auto role = std::ranges::find(parent->roles, tier.role, &grammar::Role::name);
+    if (role == parent->roles.end())
+      parent->roles.push_back({tier.role, value});
+    else if (role->value != value)
+      left_out.push_back(&child);
+  }
+  if (!left_out.empty()) {
+    const Meaning& tier = *TierOf(*left_out.front(), map);
+    grammar::Diagnostic warning =
+        file.At(left_out.front()->place,
+                fmt::format("{} left out: a label of '{}' has one {}, and the first counts",
+                            left_out.size() == 1
+                                ? fmt::format("'{}' is", left_out.front()->text)
+                                : fmt::format("{} labels of child tiers are", left_out.size()),
+                            tier.of, tier.role));
+    warning.is_warning = true;
+    warnings += grammar::Format(warning);
   }
   return labels;
 }
 
 }  // namespace
 
+  std::vector<const Label*> left_out;
 Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelMap* map,
                                       const Events& events) {
   std::vector<TakeRows> takes;
@@ -264,7 +285,7 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
   for (const TakeRows& take : takes) {
     const LabelFile& file = files[take.file];
     std::vector<LabelledEvent>& of_take = reading.events_.emplace_back();
-    for (const Label& label : LabelsOf(file, take, map, problems)) {
+    for (const Label& label : LabelsOf(file, take, map, problems, reading.warnings_)) {
       const std::string text = Trimmed(label.text);
       const bool in_map = map && map->labels.contains(text);
       const Meaning* tier = side == Side::kFound && map && !in_map ? TierOf(label, map) : nullptr;
