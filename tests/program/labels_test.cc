@@ -261,9 +261,10 @@ TEST_F(Labelled, DifferencesAreListed) {
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_TRUE(Has(said.out, "\npick_and_place_from_motion, against the labels:\nmilk:\n"))
       << said.out;
-  EXPECT_TRUE(Has(said.out, "missing  picking_up(right_hand, milk)  true 4.50000..4.60000 s\n"))
+  EXPECT_TRUE(Has(said.out, "missing  picking_up(right_hand, milk)    true 4.50000..4.60000 s\n"))
       << said.out;
-  EXPECT_TRUE(Has(said.out, "extra    grasping(milk)                found 1.47910..")) << said.out;
+  EXPECT_TRUE(Has(said.out, "extra    grasping(right_hand, milk)      found 1.47910.."))
+      << said.out;
   EXPECT_FALSE(Has(said.out, "off ")) << said.out;
   const Said agrees = Prehend({"score", take, "--truth", docs_ + "/labels.csv", "--map", map_,
                                "--collar-ms", "1000", "--verbose"});

@@ -191,6 +191,24 @@ void Compare(const std::string& event, const std::vector<grammar::Role>& roles,
     });
 }
 
+/// Of all events of a map the roles that each label of it would have, in any tier, with all columns
+/// and child tiers filled.
+ComparedRoles Possible(const LabelMap& map, const Events& events) {
+  std::vector<Label> places(map.tiers.empty() ? 1 : 0);
+  for (const auto& [name, tier] : map.tiers)
+    if (!tier.ignored && tier.role.empty()) places.push_back({.tier = name});
+  ComparedRoles possible;
+  for (Label& label : places) {
+    for (const grammar::Role& column : map.csv.roles) label.roles.push_back({column.name, "?"});
+    for (const auto& [_, tier] : map.tiers)
+      if (!tier.role.empty() && tier.of == label.tier) label.roles.push_back({tier.role, "?"});
+    for (const auto& [text, _] : map.labels)
+      if (const Meant meant = ByMap(label, text, map, events, Side::kTruth); meant.event)
+        Compare(meant.event->event, meant.event->roles, possible);
+  }
+  return possible;
+}
+
 /// A warning of labels that are left out, or "".
 std::string WithoutText(const LabelFile& file) {
   if (file.empty.empty()) return "";
@@ -222,6 +240,7 @@ std::vector<Label> LabelsOf(const LabelFile& file, const TakeRows& take, const L
     const Meaning* tier = TierOf(label, map);
     (tier && !tier->role.empty() ? children : labels).push_back(label);
   }
+  std::vector<const Label*> left_out;
   for (const Label& child : children) {
     const Meaning& tier = *TierOf(child, map);
     const double middle_s = (child.begin_s + child.end_s) / 2;
@@ -259,7 +278,6 @@ std::vector<Label> LabelsOf(const LabelFile& file, const TakeRows& take, const L
 
 }  // namespace
 
-  std::vector<const Label*> left_out;
 Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelMap* map,
                                       const Events& events) {
   std::vector<TakeRows> takes;
@@ -325,9 +343,8 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
   // What labels could name: without one of them, what is recognised of it is too much. Where no
   // label is and no map, that is all.
   if (map) {
-    for (const auto& [text, meaning] : map->labels)
-      if (!meaning.ignored && !reading.compared_.contains(meaning.event))
-        Compare(meaning.event, meaning.roles, reading.compared_);
+    ComparedRoles possible = Possible(*map, events);
+    reading.compared_.merge(possible);
   } else if (reading.compared_.empty()) {
     for (const EventSignature& event : events) reading.compared_[event.name] = event.roles;
   }
