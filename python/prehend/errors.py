@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What goes wrong: exceptions with a place and a remedy, and warnings of what is missing or looks wrong."""
 import io
+import numbers
 import os
 import re
 import sys
@@ -95,6 +96,14 @@ def fail(kind, message, remedy="", file=""):
 def wrong(message, remedy=""):
     """The same of arrays, tables and poses."""
     fail(FrameError, message, remedy, "frames")
+
+
+def number(value, what, least=-1e300, most=1e300, wanted="seconds", kind=Error):
+    """As a float: a finite number in this range, and no bool, text, Timedelta or NA."""
+    if isinstance(value, bool) or not isinstance(value, numbers.Real) or not least <= value <= most:
+        remedy = "seconds are .total_seconds() of it" if hasattr(value, "total_seconds") else ""
+        fail(kind, f"{what}: found {value!r}, wanted {wanted}", remedy, "frames" if kind is FrameError else "")
+    return float(value)
 
 
 def warn(text, kind=MissingFacts):

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from . import _prehend
-from .errors import Error, fail
+from .errors import Error, fail, number
 
 _FIRST = ["scenario", "episode", "event"]
 _LAST = ["begin_s", "end_s", "decided_s", "open_end"]
@@ -67,7 +67,21 @@ class Events(pd.DataFrame):
         """Names of the columns that say who takes part, list of str."""
         return [name for name in self.columns if name not in _FIRST + _LAST and self[name].dtype == object]
 
+    def _checked(self):
+        """Itself; or what was changed is no event any more."""
+        for name in ("event", "begin_s", "end_s"):
+            if name not in self.columns:
+                fail(Error, f"the events have no column {name!r}", "keep event, begin_s, end_s, and the columns of their roles")
+        for name in ("begin_s", "end_s", *({"decided_s"} & {*self.columns})):
+            for row, value in self[name].items():
+                number(value, f"row {row} of the events: {name}")
+        for row, begin, end in zip(self.index, self["begin_s"], self["end_s"]):
+            if not begin < end:
+                fail(Error, f"row {row} of the events: found {begin:g} to {end:g} s, wanted a begin and a later end")
+        return self
+
     def _tuples(self):
+        self._checked()
         per_second = self._source.episode.ticks_per_second()
         roles, tick = self.roles, lambda s: int(round(s * per_second))
         return [(row["event"], [(role, row[role]) for role in roles if row[role]], tick(row["begin_s"]),
@@ -99,9 +113,8 @@ class Events(pd.DataFrame):
         pandas.Series
             Categorical, by time in seconds; ``.cat.codes`` is an index per frame.
         """
-        if isinstance(per_frame, bool) or not isinstance(per_frame, (int, float, np.number)) or not 0 < per_frame < 1e6:
-            fail(Error, f"per_frame: found {per_frame!r}, wanted frames per second", "labels(per_frame=30)")
-        source = self._has_source()
+        number(per_frame, "per_frame", 1e-6, 1e6, "frames per second, like 30")
+        source = self._checked()._has_source()
         t = np.arange(0, source.end / source.episode.ticks_per_second(), 1 / per_frame)
         found = np.full(len(t), idle, dtype=object)
         if events is None and source.grammar:
@@ -130,7 +143,7 @@ class Events(pd.DataFrame):
             self.to_json(file, orient="records")
             return
         if not str(file).lower().endswith((".csv", ".eaf", ".textgrid")):
-            fail(Error, f"found {os.path.basename(file)!r}, wanted NAME.csv, .eaf, .TextGrid or .json", "write('take1.eaf')")
+            fail(Error, f"found {os.path.basename(str(file))!r}, wanted NAME.csv, .eaf, .TextGrid or .json", "write('take1.eaf')")
         self._has_source().episode.write_labels(self._tuples(), str(file), getattr(self._source.grammar, "_compiled", None))
 
     def svg(self) -> str:

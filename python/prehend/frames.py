@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from . import _prehend
-from .errors import DoubtfulFrames, FrameError, fail, warn, wrong
+from .errors import DoubtfulFrames, FrameError, fail, number, warn, wrong
 
 _FINE = 10_000  # ticks per second, as `prehend import` has them
 _POSE = ["x", "y", "z", "qw", "qx", "qy", "qz"]
@@ -96,9 +96,7 @@ def _times(t, rate_hz, frames):
     if (t is None) == (rate_hz is None):
         wrong("wanted either t or rate_hz", "t=seconds of each frame, or rate_hz=frames per second")
     if rate_hz is not None:
-        if isinstance(rate_hz, bool) or not isinstance(rate_hz, (int, float, np.number)) or not 0.1 <= rate_hz <= 1e5:
-            wrong(f"rate_hz: found {rate_hz!r}, wanted frames per second, 0.1 to 100000")
-        t = np.arange(frames) / float(rate_hz)
+        t = np.arange(frames) / number(rate_hz, "rate_hz", 0.1, 1e5, "frames per second, 0.1 to 100000", FrameError)
     t = _number_array(t, "t")
     if len(t) != frames:
         wrong(f"t has {len(t)} times, and there are {frames} frames", "one time per frame")

@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from . import _prehend, episodes, events, frames
-from .errors import DoubtfulFrames, DoubtfulLabels, Error, GrammarError, fail, warn, wrong
+from .errors import DoubtfulFrames, DoubtfulLabels, Error, FrameError, GrammarError, fail, number, warn, wrong
 
 
 class Grammar:
@@ -267,9 +267,10 @@ class Monitor:
 
     def __init__(self, grammar: Grammar, entities: dict, ticks_per_second: int = 10_000, bridge_s: float = 0.1,
                  name: str = "live"):
+        number(ticks_per_second, "ticks_per_second", 1, wanted="a whole number", kind=FrameError)
         line, self._standing = frames.first_line(entities, ticks_per_second, name, grammar.name, bridge_s=bridge_s)
         self._monitor, self._entities, self._line, self._grammar = _prehend.Monitor(grammar._compiled, line), entities, line, grammar
-        self._per_second, self._last, self._t = int(ticks_per_second), None, None
+        self._per_second, self._last, self._t, self._end = int(ticks_per_second), None, None, None
         warn(self._monitor.warnings())
 
     def update(self, t: float, poses: dict, grips: Optional[dict] = None, touches=()) -> list:
@@ -320,20 +321,29 @@ class Monitor:
 
     def finish(self, t: Optional[float] = None) -> list:
         """The episode ends at t seconds, by default with the last frame: events that were open, as `update` tells them."""
-        return self._told(self._monitor.finish((self._last or 0) + 1 if t is None else self._tick(t)))
+        end = (self._last or 0) + 1 if t is None else self._tick(t)
+        told = self._told(self._monitor.finish(end))
+        self._end = end
+        return told
 
     def events(self, told: list) -> "events.Events":
-        """What `update` and `finish` told, as `Events`: to be scored, drawn, written."""
-        end = max([self._last or 0, *(round(one["end_s"] * self._per_second) for one in told)]) + 1
+        """What `update` and `finish` told, as `Events`: to be scored, drawn, written. They end with the episode, or with the last frame."""
+        roles, last = self._grammar.events["roles"], ["begin_s", "end_s", "decided_s", "open_end"]
+        for number_, one in enumerate(told if isinstance(told, (list, tuple)) else [told]):
+            if missing := [key for key in ("event", *last) if not isinstance(one, dict) or key not in one]:
+                fail(Error, f"told: found {'one without ' + missing[0] if isinstance(one, dict) else type(one).__name__} at {number_}, wanted "
+                     "dicts", "a list of what update() and finish() told")
+        end = self._end or (self._last or 0) + 1
         episode = _prehend.episode_of(self._line, np.zeros(1, dtype=np.int64), [], [], np.zeros((0, 3), dtype=np.int64),
                                       np.zeros(0), end)
-        roles, last = self._grammar.events["roles"], ["begin_s", "end_s", "decided_s", "open_end"]
+        if not told:
+            return events.of([], episode, self._grammar, end)
         table = events.Events([{"scenario": episode.name, "episode": 0, **one} for one in told])
         named = [one for one in dict.fromkeys(role for row in roles for role in row) if one in table.columns]
         table = table[["scenario", "episode", "event", *named, *last, *(set(table.columns) - {*named, *last, *table.columns[:3]})]]
         table[named] = table[named].fillna("")
         table._source = events.Source(episode, self._grammar, end)
-        return table.sort_values(["begin_s", "end_s"], ignore_index=True)
+        return table._checked().sort_values(["begin_s", "end_s"], ignore_index=True)
 
     @staticmethod
     def _touch(one):
@@ -344,8 +354,7 @@ class Monitor:
         return dict(zip(("a", "b", "up_on_a"), one))
 
     def _tick(self, t):
-        if isinstance(t, bool) or not isinstance(t, (int, float, np.number)) or not np.isfinite(t):
-            wrong(f"t: found {t!r}, wanted seconds")
+        number(t, "t", kind=FrameError)
         if abs(t - (self._t or 0)) > 1e6:
             wrong(f"t: found {t:g} s, {'the first frame' if self._t is None else f'after {self._t:g} s'}",
                   "count seconds from the beginning: t - t0")

@@ -58,6 +58,35 @@ class Live(unittest.TestCase):
         with self.assertRaisesRegex(prehend.Error, "a table does not say which entities"):
             grammar.score(pd.DataFrame(labels), labels)
 
+    def test_nothing_told_is_no_events(self):
+        monitor = prehend.Grammar("contact").monitor(takes.ENTITIES)
+        before = monitor.events([])
+        monitor.update(0, {"cup": (0, 0, 0.86)})
+        during = monitor.events([])
+        for events in (before, during, monitor.events(monitor.finish(2.0))):
+            self.assertIsInstance(events, prehend.Events)
+            self.assertEqual((len(events), list(events.columns)), (0, ["scenario", "episode", "event", "begin_s", "end_s", "decided_s", "open_end"]))
+        scores = prehend.Grammar("contact").score(events, pd.DataFrame({"begin_s": [0.5], "end_s": [1], "label": ["contact"]}))
+        self.assertEqual((scores.loc["all", "true"], scores.loc["all", "found"]), (1, 0))
+
+    def test_an_episode_ends_when_it_is_finished(self):
+        grammar = prehend.Grammar("contact")
+        monitor = grammar.monitor(takes.ENTITIES)
+        told = monitor.update(0, {"cup": (0, 0, 0.86)}, touches=[("cup", "table", 1.0)])
+        told += monitor.update(1, {})
+        told += monitor.update(3, {})
+        told += monitor.finish(10.0)
+        events = monitor.events(told)
+        self.assertEqual(events._source.end, 10 * 10_000)
+        labels = pd.DataFrame({"begin_s": [0.0, 5], "end_s": [1.0, 9], "label": ["contact"] * 2})
+        scores = grammar.score(events, labels)
+        self.assertEqual((scores.loc["contact", "true"], scores.loc["contact", "found"]), (2, 1))
+        self.assertAlmostEqual(scores.loc["contact", "frame_accuracy"], 0.6, 4)  # 4 of 10 s are missed
+        self.assertAlmostEqual(scores.loc["contact", "ward_missed_s_deletion"], 4.0)
+        late = prehend.Error, "the label lies at 11 to 12 s, the recording ends after 10 s"
+        with self.assertRaisesRegex(*late):
+            grammar.score(events, labels + pd.DataFrame({"begin_s": [0.0, 6], "end_s": [0.0, 3], "label": ["", ""]}))
+
     def test_touches_and_dicts(self):
         monitor = prehend.Grammar("contact").monitor(takes.ENTITIES)
         poses = {"cup": {"at_m": (0, 0, 0.86)}, "right_hand": (0, 0, 1)}

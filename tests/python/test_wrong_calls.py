@@ -141,6 +141,13 @@ CALLS = {
     "an update with half a position": (lambda: updated((1, {"cup": (0, NAN, 1)})), F, "NaN in all"),
     "an update with an array of poses": (lambda: updated((1, np.zeros(3))), F, "wanted a dict by entity"),
     "a touch of nobody": (lambda: updated((1, {}), touches=[("cup", "tabel")]), F, "did you mean 'table'"),
+    "told by nobody": (lambda: updated((1, {})).events(None), ANY, "told: found NoneType at 0, wanted dicts"),
+    "told without an end": (lambda: updated((1, {})).events([{"event": "contact", "begin_s": 0}]), ANY, "told: found one without end_s at 0"),
+    "told without when": (lambda: updated((1, {})).events([{"event": "contact", "begin_s": 0, "end_s": 1}]), ANY, "without decided_s"),
+    "told as a text": (lambda: updated((1, {})).events(["contact"]), ANY, "told: found str at 0"),
+    "told backwards": (lambda: updated((3, {})).events([{"event": "contact", "a": "cup", "b": "table", "begin_s": 2, "end_s": 1, "decided_s": 2, "open_end": False}]),
+                       ANY, "row 0 of the events: found 2 to 1 s, wanted a begin and a later end"),
+    "ticks that are a text": (lambda: prehend.Grammar("contact").monitor(takes.ENTITIES, ticks_per_second="x"), F, "ticks_per_second: found 'x'"),
     "an update after the end": (lambda: updated((1, {})).finish() or updated((1, {})).finish(0.2), F, "is not after|before its last"),
     # episodes
     "a file that is not there": (lambda: prehend.open("takes/nowhere.jsonl"), E, "no such file"),
