@@ -54,7 +54,8 @@ py::list ToPython(const grammar::Timeline& timeline) {
 using EventTuple = std::tuple<std::string, std::vector<std::pair<std::string, std::string>>,
                               grammar::Tick, grammar::Tick, grammar::Tick>;
 
-grammar::Timeline ToTimeline(const std::vector<EventTuple>& events, grammar::Tick per_second) {
+/// In the order of `events`.
+grammar::Timeline InRows(const std::vector<EventTuple>& events, grammar::Tick per_second) {
   grammar::Timeline timeline{.ticks_per_second = per_second};
   for (const auto& [name, roles, begin, end, decided] : events) {
     grammar::NamedEvent& event = timeline.events.emplace_back();
@@ -63,6 +64,11 @@ grammar::Timeline ToTimeline(const std::vector<EventTuple>& events, grammar::Tic
     event.interval = {begin, end};
     event.decided = decided;
   }
+  return timeline;
+}
+
+grammar::Timeline ToTimeline(const std::vector<EventTuple>& events, grammar::Tick per_second) {
+  grammar::Timeline timeline = InRows(events, per_second);
   std::stable_sort(timeline.events.begin(), timeline.events.end(), grammar::ComesBefore);
   return timeline;
 }
@@ -416,7 +422,7 @@ PYBIND11_MODULE(_prehend, m) {
     std::vector<Compared> episodes;
     for (const auto& [episode, found, labels, end] : all)
       episodes.push_back(
-          {episode, ToTimeline(found, episode.entities().ticks_per_second), labels, end});
+          {episode, InRows(found, episode.entities().ticks_per_second), labels, end});
     return ScoreJson(grammar, episodes, map, collar_s);
   });
   m.def("margins", &MarginsCsv, Unlocked());

@@ -114,7 +114,7 @@ class Episode:
             A row per frame by time in seconds, a column per signal; SI units, in ``.attrs["units"]``.
             What is true or false is 1 or 0; NaN where there is no value.
         """
-        ticks, columns = self._opened.signals(compiled(grammar)[1], list(names))
+        ticks, columns = self._opened.signals(compiled(grammar)[1], list(map(str, names)))
         table = pd.DataFrame({name: values for name, _, values in columns},
                              index=pd.Index(ticks / float(self.ticks_per_second), name="t"), copy=False)
         table.attrs["units"] = {name: unit for name, unit, _ in columns}
@@ -134,10 +134,12 @@ class Episode:
         -------
         Explanation
         """
-        return events.Explanation(*self._opened.explain(compiled(grammar)[1], event))
+        return events.Explanation(*self._opened.explain(compiled(grammar)[1], str(event)))
 
     def write(self, file: Path) -> None:
         """Writes its frames as a recording (docs/recording-format.md), NAME.jsonl."""
+        if not str(file).endswith(".jsonl"):
+            fail(EpisodeError, f"found {str(file)!r}, wanted NAME.jsonl")
         self._opened.write_frames(str(file))
 
     def __repr__(self):
@@ -244,7 +246,7 @@ def open(path: Union[Path, Sequence[Path]], which: str = "") -> Episodes:  # pyl
     --------
     >>> prehend.open("suite.episodes")["slide/hop_divides_a_slide"].events
     """
-    paths = [path] if isinstance(path, (str, os.PathLike)) else list(path)
+    paths = [path] if isinstance(path, (str, os.PathLike)) or not hasattr(path, "__iter__") else list(path)
     episodes = []
     for one in paths:
         if not isinstance(one, (str, os.PathLike)):

@@ -84,7 +84,9 @@ def of(diagnostics):
         kind = FrameError
     elif diagnostics and ".grammar" in diagnostics[0][0]:
         kind = GrammarError
-    return kind(diagnostics)
+    # Options are arguments here, and where there is no place, none is told.
+    return kind([(file.removeprefix("--"), line, column, *(re.sub(r"^(--(?=[a-z_]+:)|: error: )", "", text).replace("--episode needs", "which= needs")
+                                                           for text in texts)) for file, line, column, *texts in diagnostics])
 
 
 def fail(kind, message, remedy="", file=""):

@@ -84,7 +84,7 @@ class Events(pd.DataFrame):
         self._checked()
         per_second = self._source.episode.ticks_per_second()
         roles, tick = self.roles, lambda s: int(round(s * per_second))
-        return [(row["event"], [(role, row[role]) for role in roles if row[role]], tick(row["begin_s"]),
+        return [(row["event"], [(role, row[role]) for role in roles if isinstance(row[role], str) and row[role]], tick(row["begin_s"]),
                  tick(row["end_s"]), tick(row.get("decided_s", row["end_s"]))) for row in self.to_dict("records")]
 
     def _has_source(self):

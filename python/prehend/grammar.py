@@ -126,11 +126,12 @@ class Grammar:
         pandas.DataFrame
             By event, and "all": true, found, f1_10, f1_25, f1_50 (0 to 1), edit, Ward's classes,
             boundary errors in seconds, latency, and more; docs/regression-suite.md says what each
-            is. Events that no label names are not judged; without any label and a map all are.
+            is; ``.attrs["moments"]``: of labels of a moment, which are in no other figure, how many lie
+            in such an event, by event. Events that no label names are not judged; without any label and a map all are.
             `DoubtfulLabels` warns of labels that overlap, or that are found if all are moved.
         """
-        many = lambda one: one if isinstance(one, (list, tuple, episodes.Episodes)) else [one]
-        found, truth = many(found), many(truth)
+        found, truth = _many(found), _many(truth)
+        collar_s = collar_s if collar_s is None else number(collar_s, "collar_s", 0, 10, "0 to 10 seconds")
         if len(found) != len(truth) or not len(found):
             fail(Error, f"{len(found)} of found, {len(truth)} of truth", "one truth for each episode, in the same order")
         compared = []
@@ -140,12 +141,19 @@ class Grammar:
                     fail(Error, "found: a table does not say which entities there are",
                          "what segment() returned, monitor.events(told), or an episode")
                 one = one if isinstance(one, events.Events) else self.segment(one)
-                source = one._has_source()
+                source = one._checked()._has_source()
+                unknown = set(one["event"]) - set(self.events.index)
+                if unknown and source.grammar:  # what another grammar recognises besides is not judged
+                    one = one[~one["event"].isin(unknown & set(source.grammar.events.index))]
+                place = f"found[{len(compared)}]"
+                labelled.tables[place] = ("found" if len(found) == 1 else place, one.index)
                 compared.append((source.episode, one._tuples(), file, source.end))
             scores, strange = _prehend.score(self._compiled, compared, str(map or ""), collar_s)
         warn(labelled.as_called(strange), DoubtfulLabels)
         scores = json.loads(scores)
-        return pd.json_normalize(scores["events"] + [scores["total"]], sep="_").set_index("event").apply(pd.to_numeric)  # null: NaN
+        table = pd.json_normalize(scores["events"] + [scores["total"]], sep="_").set_index("event").apply(pd.to_numeric)  # null: NaN
+        table.attrs["moments"] = scores["moments"]
+        return table
 
     def margins(self, episodes_, truth, map=None, over=(), within: float = 0.01) -> pd.DataFrame:  # pylint: disable=redefined-builtin
         """How far each parameter may be from its value before the score drops.
@@ -168,16 +176,15 @@ class Grammar:
         pandas.DataFrame
             By parameter: value, f1, from, to, best, best_at, ..; those with the smallest range first.
         """
-        opened = episodes.open(episodes_) if isinstance(episodes_, (str, os.PathLike)) else episodes_
-        opened = opened if isinstance(opened, (list, tuple, episodes.Episodes)) else [opened]
-        truth = truth if isinstance(truth, (list, tuple)) else [truth]
+        opened = [each for one in _many(episodes_) for each in _many(self._episode(one))]
+        truth, within = _many(truth), number(within, "within", 0, 1, "0 to 1")
         with tempfile.TemporaryDirectory(prefix="prehend_") as folder, _Truth(truth, self) as labelled:
             files = [one.file or os.path.join(folder, f"{number}.jsonl") for number, one in enumerate(opened)]
             for file, one in zip(files, opened):
                 if not one.file:
                     one.write(file)
             text, strange = _prehend.margins(list(dict.fromkeys(files)), self._compiled, labelled.files, str(map or ""),
-                                             [over] if isinstance(over, str) else list(over), float(within))
+                                             [over] if isinstance(over, str) else [str(one) for one in over], within)
         warn(labelled.as_called(strange), DoubtfulLabels)
         return pd.read_csv(io.StringIO(text)).set_index("parameter")
 
@@ -188,22 +195,28 @@ class Grammar:
         return self._compiled.describe()
 
 
+def _many(one):
+    return one if isinstance(one, (list, tuple, episodes.Episodes)) else [one]
+
+
 class _Truth(contextlib.ExitStack):
     """Labels as files, and what is said of them in the words of a call: a table is no file, and there are no options."""
 
-    _WORDS = {"--map labels.yaml": "map='labels.yaml'", "--skip-bad-labels leaves out what": "leave out what",
-              "rows: {COLUMN: NAME} in a file of takes tells them apart": "score the rows of one alone"}
+    _WORDS = {"--map labels.yaml": "map='labels.yaml'", "people: --truth (": "people: truth=.. (",
+              "--skip-bad-labels leaves out what": "leave out what",
+              "rows: {COLUMN: NAME} in a file of takes tells them apart": "score the rows of one alone",
+              "; or rows: {": ", in the file map=; or truth=table[table[COLUMN] == VALUE]; rows: {"}
 
     def __init__(self, truth, grammar):
         super().__init__()
         self.files = [self.enter_context(_file_of(one, grammar)) for one in truth]
-        self._tables = {file: ("truth" if len(truth) == 1 else f"truth[{number}]", one.index)
+        self.tables = {file: ("truth" if len(truth) == 1 else f"truth[{number}]", one.index)
                         for number, (file, one) in enumerate(zip(self.files, truth)) if isinstance(one, pd.DataFrame)}
 
     def as_called(self, text):
         for words in self._WORDS.items():
             text = text.replace(*words)
-        for file, (name, index) in self._tables.items():
+        for file, (name, index) in self.tables.items():
             def row(at, name=name, index=index):
                 return f"{name}, row {index[min(int(at[1]) - 2, len(index) - 1)]}" if int(at[1] or 0) > 1 else name
             text = re.sub(re.escape(file) + r"(?::(\d+)(?::\d+)?)?", row, text)
@@ -212,7 +225,7 @@ class _Truth(contextlib.ExitStack):
     def __exit__(self, kind, error, trace):
         super().__exit__(kind, error, trace)
         if isinstance(error, Error):
-            raise type(error)([((self.as_called(f"{file}:{line}"), 0, 0) if file in self._tables else (file, line, column))
+            raise type(error)([((self.as_called(f"{file}:{line}"), 0, 0) if file in self.tables else (file, line, column))
                                + tuple(map(self.as_called, texts)) for file, line, column, *texts in error.diagnostics]) from None
 
 
@@ -227,16 +240,23 @@ def _file_of(labels, grammar):
     if {"begin_s", "end_s"} - set(labels.columns) or not {"event", "label"} & set(labels.columns):
         fail(Error, f"truth: the table has the columns {list(labels.columns)}",
              "wanted begin_s, end_s and label; or event and a column for each role")
+    if {"event", "label"} <= set(labels.columns) or labels.columns.has_duplicates:
+        fail(Error, f"truth: the table has the columns {list(labels.columns)}: which are meant?", "'label', or 'event' and roles, each once")
     roles = dict(zip(grammar.events.index, grammar.events["roles"]))
     with tempfile.NamedTemporaryFile("w", suffix=".csv", encoding="utf-8", newline="") as file:
         rows = csv.writer(file)
-        rows.writerow(["begin_s", "end_s", "label"])
-        for row in labels.to_dict("records"):
+        own = ["begin_s", "end_s", "event", "label", "decided_s", "open_end", *{one for each in roles.values() for one in each}]
+        others = [name for name in labels.columns if name not in own]  # they may say whose rows these are
+        rows.writerow([*others, "begin_s", "end_s", "label"])
+        for at, row in zip(labels.index, labels.to_dict("records")):
             label = row.get("label", row.get("event"))
+            label = "" if pd.isna(label) else label
             named = [row.get(role) for role in roles.get(label, [])] if "label" not in row else []
             if named and all(isinstance(one, str) and one for one in named):
                 label = f"{label}({', '.join(named)})"
-            rows.writerow([repr(float(row["begin_s"])), repr(float(row["end_s"])), label])
+            times = [row[name] if isinstance(row[name], str) else repr(number(row[name], f"truth, row {at}: {name}"))
+                     for name in ("begin_s", "end_s")]
+            rows.writerow([*(" ".join(str(row[name]).split()) for name in others), *times, label])
         file.flush()
         yield file.name
 

@@ -50,6 +50,8 @@ class OfEpisodeFiles(takes.Folder, unittest.TestCase):
     def test_frames_written_are_the_same_recording(self):
         one = prehend.open(self.file)[0]
         one.write(self.folder / "milk.jsonl")
+        with self.assertRaisesRegex(prehend.Error, "^which= needs episode files; "):
+            prehend.open(self.folder / "milk.jsonl", "2")
         again = prehend.open(self.folder / "milk.jsonl")[0]
         self.assertEqual(takes.found(again.events, again.ticks_per_second), takes.found(one.events, one.ticks_per_second))
 

@@ -76,6 +76,24 @@ class Study(takes.Folder, unittest.TestCase):
         self.assertTrue(scores["begin_s_median"].isna().all(), "nothing is matched")
         self.assertEqual((total["further_psds"], total["further_intersection_f1"]), (0, 0))
 
+    def test_labels_of_a_moment_are_counted(self):
+        found = self.grammar.segment(self.milk)
+        moments = pd.DataFrame({"begin_s": [2.0, 4.9], "end_s": [2.0, 4.9], "label": ["grasping"] * 2})
+        scores = self.grammar.score(found, moments)
+        self.assertEqual(scores.attrs["moments"], {"grasping": {"true": 2, "found": 1}})
+
+    def test_labels_without_text_are_left_out_whatever_they_are(self):
+        for nothing in (None, np.nan, pd.NA, ""):
+            labels = pd.DataFrame({"begin_s": [1.5, 4.5], "end_s": [4.1, 4.6], "label": ["grasping", nothing]})
+            with self.assertWarnsRegex(prehend.DoubtfulLabels, "truth, row 1: warning: a label is without text, and left out"):
+                self.assertEqual(self.grammar.score(self.milk, labels).loc["all", "true"], 1)
+
+    def test_what_another_grammar_recognises_besides_is_not_judged(self):
+        found = self.milk.segment("hand_actions_from_motion")
+        self.assertTrue(set(found["event"]) - set(self.grammar.events.index))
+        labels = pd.DataFrame({"begin_s": [1.5], "end_s": [4.1], "label": ["grasping"]})
+        self.assertEqual(self.grammar.score(found, labels).loc["grasping", "f1_50"], 1.0)
+
     def test_rows_that_overlap_are_said(self):
         once = pd.DataFrame({"begin_s": [1.5], "end_s": [4.1], "label": ["grasping"]})
         with self.assertWarnsRegex(prehend.DoubtfulLabels, "a label overlaps another one of the same event") as told:

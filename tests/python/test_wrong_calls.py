@@ -55,6 +55,23 @@ class Truth:
         return grammar.score(cls.events, truth, **more)
 
 
+    @classmethod
+    def of(cls, name, value, **more):
+        """Scores what was found against a table with this in a column."""
+        return cls.score(pd.DataFrame({"begin_s": [0, 1], "end_s": [1, 2], "label": ["contact"] * 2, name: value}), **more)
+
+    @classmethod
+    def found(cls, **changed):
+        """Scores what was found and changed against what was found."""
+        events = segment()
+        columns = changed.pop("columns", list(events.columns))
+        return prehend.Grammar("pick_and_place_from_motion").score(events.assign(**changed)[columns], events)
+
+
+def margins(episodes, truth="recorded", **more):
+    return prehend.Grammar("pick_and_place_from_motion").margins(episodes, truth, **more)
+
+
 EPISODE = []
 
 
@@ -169,6 +186,33 @@ CALLS = {
     "a truth that ends before it begins": (lambda: Truth.score(pd.DataFrame({"begin_s": [1], "end_s": [0],
                                                                              "label": ["grasping"]})), ANY, "before it begins"),
     "a truth that is a number": (lambda: Truth.score(3), ANY, "found a int"),
+    "a truth of two videos": (lambda: Truth.of("video", ["a", "b"]), E, "^truth: error: the column 'video' has several values.*truth=table"),
+    "a truth of two episodes": (lambda: Truth.of("episode", [0, 1]), E, "the column 'episode' has several values"),
+    "an event and a label": (lambda: Truth.of("event", "reaching"), ANY, r"'label', 'event'\]: which are meant"),
+    "truths by Timedelta": (lambda: Truth.of("end_s", pd.to_timedelta([1, 2], unit="s")), ANY, r"truth, row 0: end_s: found Timedelta.*total_seconds"),
+    "truths at no time": (lambda: Truth.of("end_s", pd.array([1, None], dtype="Int64")), ANY, "truth, row 1: end_s: found <NA>, wanted seconds"),
+    "truths by text": (lambda: Truth.of("begin_s", ["0", "x"]), ANY, "truth, row 1: error: begin_s: found 'x', wanted a number or a time"),
+    "a collar below zero": (lambda: Truth.of("begin_s", [0, 1], collar_s=-1), ANY, "collar_s: found -1, wanted 0 to 10"),
+    "a collar that is none": (lambda: Truth.of("begin_s", [0, 1], collar_s=NAN), ANY, "collar_s: found nan"),
+    "a collar that is a text": (lambda: Truth.of("begin_s", [0, 1], collar_s="x"), ANY, "collar_s: found 'x'"),
+    "found backwards": (lambda: Truth.found(begin_s=5.0), ANY, "row 0 of the events: found 5 to .* a later end"),
+    "found at no time": (lambda: Truth.found(begin_s=NAN), ANY, "row 0 of the events: begin_s: found nan, wanted seconds"),
+    "found by text": (lambda: Truth.found(end_s="1"), ANY, "row 0 of the events: end_s: found '1'"),
+    "found before the begin": (lambda: Truth.found(begin_s=-5.0), E, "^found, row 0: error: the label lies at -5 to"),
+    "found after the end": (lambda: Truth.found(end_s=50.0), E, "^found, row 0: error: the label lies at .* to 50 s, the recording ends after 1.98343 s"),
+    "found of nobody": (lambda: Truth.found(**dict.fromkeys(segment().roles, "cap")), E, "has no entity 'cap'.*did you mean 'cup'"),
+    "found of no grammar": (lambda: Truth.found(event="graspin"), E, "found, row 0: error: found the label 'graspin'.*like grasping"),
+    "found without roles": (lambda: Truth.found(columns=["event", "begin_s", "end_s"]), E, "found, row 0: error: '.*' says no .*, and what is true does"),
+    "found without begins": (lambda: Truth.found(columns=["event", "end_s"]), ANY, "the events have no column 'begin_s'"),
+    "margins of a number": (lambda: margins(3), F, "found a int"),
+    "margins below zero": (lambda: margins(episode(), within=-1), ANY, "within: found -1, wanted 0 to 1"),
+    "margins over a parameter of nobody": (lambda: margins(episode(), "recorded", over=["nix"]), ANY, "^over: error: the grammar has no parameter 'nix'"),
+    "margins against what is nowhere": (lambda: margins(episode(), "golden", over=["hold_way"]), ANY, r"^0: 0 was not simulated.*labels by people: truth=\.\. \("),
+    "margins of nothing": (lambda: margins([], []), ANY, "^no file is named"),
+    "a number to open": (lambda: prehend.open(3), E, "found a int, wanted a path"),
+    "a recording of another kind": (lambda: episode().write("/tmp/x.csv"), E, r"'/tmp/x.csv', wanted NAME\.jsonl"),
+    "a signal that is a number": (lambda: episode().signals(3), E, "^no event, condition or signal of the grammar is called '3'"),
+    "an event after the end": (lambda: episode().explain("grasping@99s"), E, "found 99 s, the episode ends after 1.98343 s"),
     "two truths of one": (lambda: Truth.score([None, None]), ANY, "one truth for each"),
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/library/library/study.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -29,6 +31,24 @@ show::Watched Watch(episode::Episode& episode) {
   show::Watched watched = show::Watch(episode);
   if (!watched.problem.empty()) Refuse(episode.name().file, watched.problem);
   return watched;
+}
+
+/// Events as if they stood in a file below a head, so that the same is wrong with them.
+exchange::LabelFile FileOf(const grammar::Timeline& found, std::size_t number) {
+  exchange::LabelFile file{.file = "found[" + std::to_string(number) + "]", .text = "\n"};
+  const auto seconds = [per_s = static_cast<double>(found.ticks_per_second)](grammar::Tick tick) {
+    return static_cast<double>(tick) / per_s;
+  };
+  for (const grammar::NamedEvent& event : found.events) {
+    file.text += event.Label() + "\n";
+    file.labels.push_back({.begin_s = seconds(event.interval.begin),
+                           .end_s = seconds(event.interval.end),
+                           .text = event.event,
+                           .place = {static_cast<int>(file.labels.size()) + 2, 1},
+                           .roles = event.roles,
+                           .decided_s = seconds(event.decided)});
+  }
+  return file;
 }
 
 }  // namespace
@@ -73,6 +93,11 @@ Explanation Explain(const Episode& episode, const Grammar* grammar, const std::s
     std::optional<show::Ask> ask;
     if (!event.empty())
       ask = Unwrap(show::ParseAsk("event", event, *opened.program(), opened.entities()));
+    const auto length_s = static_cast<double>(episode.impl().end) /
+                          static_cast<double>(opened.entities().ticks_per_second);
+    if (ask && ask->time_s.value_or(0) > length_s)
+      Refuse("event",
+             fmt::format("found {:g} s, the episode ends after {:g} s", *ask->time_s, length_s));
     const show::Watched watched = Watch(opened);
     grammar::ReplayMonitor& past = *watched.past;
     const grammar::Tick per_s = past.entity_table().ticks_per_second;
@@ -137,7 +162,11 @@ Warned ScoreJson(const Grammar& grammar, const std::vector<Compared>& episodes,
     scored.truth = Unwrap(truths.Truth(take, table.entities, table.ticks_per_second, scored.ticks));
     doubts += measure::RateWarning(
         truths, take, static_cast<double>(one.end) / static_cast<double>(table.ticks_per_second));
-    measure::AddFound(one.found, take, truths, collar, scored);
+    const auto found = Unwrap(exchange::AsFound(
+        FileOf(one.found, take), episode::TakesOf({names[take]}), "", *grammar.program()));
+    measure::AddFound(
+        Unwrap(found.Found(0, table.entities, table.ticks_per_second, one.end, truths.compared())),
+        take, truths, collar, scored);
   }
   const measure::Score score = measure::ScoreOf(
       "", all, collar, collar_s ? measure::Collars() : measure::Collars(truths.collars_s()));

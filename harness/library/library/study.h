@@ -48,9 +48,9 @@ using Warned = std::pair<std::string, std::string>;
 
 struct Compared {
   Episode episode;
-  grammar::Timeline found;
-  std::string labels;     ///< a file
-  grammar::Tick end = 0;  ///< of what was looked at
+  grammar::Timeline found;  ///< in any order; line 2 of "found[0]" is the first event
+  std::string labels;       ///< a file
+  grammar::Tick end = 0;    ///< of what was looked at
 };
 /// JSON as of `prehend score --truth .. --map .. --json`: "grammars"[0]. Without `collar_s` that of
 /// the map, or 50 ms. At least one episode.
