@@ -97,7 +97,7 @@ std::string UnpackedTasks::Unpack(const TaskFiles& task) {
     if (!is_new && known->second == hash) continue;
     known->second = hash;
     if (!path.starts_with("scenarios/") || path.ends_with(".grammar")) ++writes_;
-    const std::string problem = WriteTextFile(PathOf(path), content);
+    const std::string problem = WriteTextFile(PathOf(path), content, Over::kAnything);
     if (!problem.empty()) return problem;
   }
   return "";
