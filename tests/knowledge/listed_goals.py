@@ -26,7 +26,7 @@ $syspreds:predicate_property/2 $syspreds:property_predicate/2 run/3
 (<)/2 (=)/2 (=..)/2 (=:=)/2 (=<)/2 (==)/2 (=@=)/2 (=\\=)/2 (>)/2 (>=)/2 (\\=)/2 (\\==)/2 (is)/2 acyclic_term/1 arg/3 atom/1
 atom_chars/2 atom_concat/3 atom_number/2 atom_string/2 atomic/1 atomic_list_concat/2 atomic_list_concat/3 b_getval/2 b_setval/2 between/3
 callable/1 char_type/2 clause/2 compare/3 compound/1 compound_name_arity/3 copy_term/2 current_predicate/1 cyclic_term/1 default_module/2
-dict_pairs/3 duplicate_term/2 fail/0 float/1 flush_output/0 format/3 functor/3 import_module/2 integer/1 is_dict/1 is_dict/2 is_list/1
+dict_pairs/3 duplicate_term/2 fail/0 float/1 flush_output/0 format/3 functor/3 ground/1 import_module/2 integer/1 is_dict/1 is_dict/2 is_list/1
 length/2 line_position/2 memberchk/2 msort/2 nb_current/2 nb_linkarg/3 nb_setarg/3 nb_setval/2 nonvar/1 number/1 once/1 put_char/2
 put_dict/3 put_dict/4 setup_call_catcher_cleanup/4 setup_call_cleanup/3 sig_atomic/1 sort/2 stream_pair/3 string/1 sub_atom/5 succ/2
 term_variables/2 throw/1 true/0 upcase_atom/2 var/1 variant_hash/2 with_output_to/2 write/2 writeln/1

@@ -197,7 +197,7 @@ def check_faults(folder, episodes, map_path):
     assert "grasp_1 would be true in the first frame" in said("episode", "label", episodes, "--map", wrong, "-o", out, code=1)
     os.remove(out)
     source = map_path.replace(".yaml", ".hdf5")
-    assert "original" in said("episode", "label", episodes, "--map", map_path, "-o", source, code=2)
+    assert "what is read" in said("episode", "label", episodes, "--map", map_path, "-o", source, code=2)
     said("episode", "label", episodes, "--map", map_path, code=2)
     said("episode", "label", episodes, "--map", map_path, "-o", out, "--to", "csv", code=2)
     assert not os.path.exists(out)
