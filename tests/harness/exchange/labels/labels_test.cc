@@ -1,91 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Labels by people: each format as its program writes it, what is wrong in it, and what the labels
 // mean.
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <pugixml.hpp>
 #include <regex>
 #include <set>
 
-#include "harness/exchange/labels/label_map.h"
-#include "harness/exchange/labels/read_labels.h"
 #include "harness/exchange/labels/read_truths.h"
+#include "tests/harness/exchange/labels/labels_stage.h"
 
-namespace prehend::exchange {
+namespace prehend::exchange::of_labels {
 namespace {
-
-namespace fs = std::filesystem;
-using grammar::EventSignature;
-
-const std::vector<EventSignature> kEvents = {
-    {.name = "reaching", .roles = {"hand", "object"}, .classes = {"Hand", "Thing"}},
-    {.name = "grasping",
-     .roles = {"hand", "object"},
-     .classes = {"Hand", "Thing"},
-     .has_style = true},
-    {.name = "contact", .roles = {"a", "b"}, .classes = {"Entity", "Entity"}, .symmetric = true}};
-
-const grammar::EntityInfo kHand = {.name = "right_hand", .classes = {"Hand", "Entity"}},
-                          kCup = {.name = "cup", .classes = {"Thing", "Entity"}},
-                          kTable = {.name = "table", .classes = {"Thing", "Entity"}};
-
-class Labels : public testing::Test {
- protected:
-  Labels() { fs::create_directories(folder_); }
-  ~Labels() override { fs::remove_all(folder_); }
-
-  std::string File(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return (folder_ / name).string();
-  }
-  /// "0.5..1.5 hold [right]; .."
-  std::string Read(const std::string& name, const std::string& text) const {
-    const Result<LabelFile> file = ReadLabels(File(name, text));
-    if (!file) return grammar::Format(file.error().front());
-    std::string all;
-    for (const Label& label : file->labels)
-      all += fmt::format("{:g}..{:g} {}{}; ", label.begin_s, label.end_s, label.text,
-                         label.tier.empty() ? "" : " [" + label.tier + "]");
-    return all;
-  }
-  /// The first message without its folder.
-  std::string Problem(const std::string& name, const std::string& text) const {
-    const std::string said = Read(name, text);
-    const std::size_t at = said.find(name);
-    return at == std::string::npos ? said : said.substr(at, said.find('\n') - at);
-  }
-  Result<LabelMap> Map(const std::string& text) const {
-    return ReadLabelMap(File("map.yaml", text), kEvents);
-  }
-  std::string MapProblem(const std::string& text) const {
-    const Result<LabelMap> map = Map(text);
-    if (map) return "";
-    const std::string said = grammar::Format(map.error().front());
-    const std::size_t at = said.find("map.yaml");
-    return said.substr(at, said.find('\n') - at);
-  }
-
-  const fs::path folder_ =
-      fs::path(testing::TempDir()) /
-      ("labels_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-};
-
-grammar::Timeline TruthOf(const Result<LabelReading>& reading) {
-  const auto truth = reading->Truth(0, {kHand, kCup, kTable}, 100, 1000);
-  if (!truth) ADD_FAILURE() << grammar::Format(truth.error());
-  return truth ? *truth : grammar::Timeline{};
-}
-
-std::string Text(const grammar::Timeline& timeline) {
-  std::string text;
-  for (const grammar::NamedEvent& event : timeline.events)
-    text += fmt::format("{} {}..{}; ", event.Label(), event.interval.begin, event.interval.end);
-  return text;
-}
 
 TEST_F(Labels, CsvHasItsColumnsByName) {
   EXPECT_EQ(Read("a.csv", "begin_s,end_s,label\n0.5,1.5,hold\n\n2,3,\"a, b\"\n"),
@@ -462,36 +388,6 @@ TEST_F(Labels, WhatIsFoundIsComparedInTheRolesOfTheLabels) {
   EXPECT_EQ(ByHand(found, {}).events[0].event, "reaching of right_hand");
 }
 
-TEST_F(Labels, OfSeveralChildrenTheFirstCountsAndTheOthersAreTold) {
-  const auto map =
-      Map("tiers:\n  right: {hand: right_hand}\n  things: {role: object, of: right}\n"
-          "labels:\n  hold: {event: grasping}\n");
-  const auto read = [&](const std::string& rows) {
-    const auto file = ReadLabels(
-        File("a.csv", "begin_s,end_s,label,tier\n1,3,hold,right\n1,2,cup,things\n" + rows));
-    const auto reading = LabelReading::Of({*file}, &*map, kEvents);
-    EXPECT_EQ(Text(TruthOf(reading)), "grasping(right_hand, cup) 100..300; ");
-    const std::string& said = reading->warnings();
-    return said.substr(std::min(said.find("a.csv"), said.size()), said.find('\n'));
-  };
-  EXPECT_EQ(read(""), "");
-  EXPECT_EQ(read("2,3,cup,things\n"), "") << "the same";
-  EXPECT_TRUE(read("2,3,jar,things\n")
-                  .starts_with("a.csv:4:5: warning: 'jar' is left out: a label of 'right' has one "
-                               "object, and the first counts"))
-      << read("2,3,jar,things\n");
-  EXPECT_TRUE(read("2,2.5,jar,things\n2.5,3,can,things\n")
-                  .starts_with("a.csv:4:7: warning: 2 labels of child tiers are left out: a"))
-      << read("2,2.5,jar,things\n2.5,3,can,things\n");
-}
-
-TEST_F(Labels, TicksAreOnlyOfWhatIsFound) {
-  EXPECT_EQ(Problem("a.jsonl", "{\"event\": \"x\", \"begin_tick\": 1, \"end_tick\": 2}\n"),
-            "a.jsonl:1:1: error: end_tick: ticks are read only of what is --found; wanted end_s, "
-            "in seconds");
-  EXPECT_EQ(Read("a.jsonl", "{\"event\": \"x\", \"begin_s\": 1, \"end_s\": 2}\n"), "1..2 x; ");
-}
-
 // No label of such an event fails to name what its labels would name.
 TEST_F(Labels, AnEventWithoutLabelsHasTheRolesThatItsLabelsWouldHave) {
   const auto roles = [&](const std::string& map_text, const std::string& rows) {
@@ -620,4 +516,4 @@ TEST_F(Labels, AnEntityThatTheMapNamesIsWrongThere) {
 }
 
 }  // namespace
-}  // namespace prehend::exchange
+}  // namespace prehend::exchange::of_labels

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which roles labels have, in which they are compared; children that are told.
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "tests/harness/exchange/labels/labels_stage.h"
+
+namespace prehend::exchange::of_labels {
+namespace {
+
+TEST_F(Labels, OfSeveralChildrenTheFirstCountsAndTheOthersAreTold) {
+  const auto map =
+      Map("tiers:\n  right: {hand: right_hand}\n  things: {role: object, of: right}\n"
+          "labels:\n  hold: {event: grasping}\n");
+  const auto read = [&](const std::string& rows) {
+    const auto file = ReadLabels(
+        File("a.csv", "begin_s,end_s,label,tier\n1,3,hold,right\n1,2,cup,things\n" + rows));
+    const auto reading = LabelReading::Of({*file}, &*map, kEvents);
+    EXPECT_EQ(Text(TruthOf(reading)), "grasping(right_hand, cup) 100..300; ");
+    const std::string& said = reading->warnings();
+    return said.substr(std::min(said.find("a.csv"), said.size()), said.find('\n'));
+  };
+  EXPECT_EQ(read(""), "");
+  EXPECT_EQ(read("2,3,cup,things\n"), "") << "the same";
+  EXPECT_TRUE(read("2,3,jar,things\n")
+                  .starts_with("a.csv:4:5: warning: 'jar' is left out: a label of 'right' has one "
+                               "object, and the first counts"))
+      << read("2,3,jar,things\n");
+  EXPECT_TRUE(read("2,2.5,jar,things\n2.5,3,can,things\n")
+                  .starts_with("a.csv:4:7: warning: 2 labels of child tiers are left out: a"))
+      << read("2,2.5,jar,things\n2.5,3,can,things\n");
+}
+
+TEST_F(Labels, TicksAreOnlyOfWhatIsFound) {
+  EXPECT_EQ(Problem("a.jsonl", "{\"event\": \"x\", \"begin_tick\": 1, \"end_tick\": 2}\n"),
+            "a.jsonl:1:1: error: end_tick: ticks are read only of what is --found; wanted end_s, "
+            "in seconds");
+  EXPECT_EQ(Read("a.jsonl", "{\"event\": \"x\", \"begin_s\": 1, \"end_s\": 2}\n"), "1..2 x; ");
+}
+
+}  // namespace
+}  // namespace prehend::exchange::of_labels
