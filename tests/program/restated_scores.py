@@ -233,9 +233,9 @@ def partners(truth, found):
 
 def quantiles(values):
     def nearest(ranked, share):
-        return ranked[min(max(math.ceil(share * len(ranked)), 1), len(ranked)) - 1] if ranked else 0
+        return ranked[min(max(math.ceil(share * len(ranked)), 1), len(ranked)) - 1] if ranked else None
     by_size = sorted(values, key=abs)
-    return {"median": statistics.median(values) if values else 0, "p95": nearest(by_size, 0.95), "max": nearest(by_size, 1)}
+    return {"median": statistics.median(values) if values else None, "p95": nearest(by_size, 0.95), "max": nearest(by_size, 1)}
 
 
 def boundaries(segments, end):
@@ -295,7 +295,7 @@ def further(truth, found, labels, end, counts):
     result["boundary_precision"] = ratio(hit, hit + extra, 1 if missed == 0 else 0)
     result["boundary_recall"] = ratio(hit, hit + missed, 1 if extra == 0 else 0)
     result["boundary_f1"] = f1((hit, extra, missed))
-    result["boundary_deviation_s"] = {"from_truth": mean(from_truth, 0), "from_found": mean(from_found, 0)}
+    result["boundary_deviation_s"] = {"from_truth": mean(from_truth, None), "from_found": mean(from_found, None)}
     result["pairwise_f1"], result["purity"], result["coverage"] = mean(pair_f1, 1), mean(purity, 1), mean(coverage, 1)
     result["frame_f1"] = ratio(2 * counts["both"], 2 * counts["both"] + counts["truth"] + counts["found"], 1)
     in_truth = counts["both"] + counts["truth"]
@@ -312,7 +312,7 @@ def further(truth, found, labels, end, counts):
         n = sum(share(x, good) >= 0.5 for x in t)
         macro.append(2 * n / (2 * n + false + len(t) - n))
         psds.append(n / len(t) * max(0, 1 - false / (end / PER_S / 3600) / 100))
-    result["intersection_f1"], result["psds"] = mean(macro, 1), mean(psds, 1)
+    result["intersection_f1"], result["psds"] = (mean(of, 0 if found else 1) for of in (macro, psds))
     return result
 
 
@@ -341,7 +341,7 @@ def figures(truth, found, end):
             "frame_accuracy": accuracy, "kappa": (accuracy - chance) / (1 - chance) if chance < 1 and everything else 1,
             "collar_f": f1((correct, len(found) - correct, len(truth) - correct)),
             "collar_error_rate": errors / len(truth) if truth else 0 if not found else 1,
-            "latency_s": {"median": 0, "p95": 0, "max": 0},
+            "latency_s": {"median": None, "p95": None, "max": None},
             "further": further(truth, found, labels, end, counts)}
 
 
@@ -370,7 +370,7 @@ def compare(said, wanted, where, problems):
             problems.append("%s: nobody restates %s" % (where, sorted(new)))
         for key, value in wanted.items():
             compare(said.get(key), value, where + "." + key, problems)
-    elif said is None or abs(said - wanted) > 1e-9:
+    elif said != wanted and (said is None or wanted is None or abs(said - wanted) > 1e-9):
         problems.append("%s: said %r, restated %r" % (where, said, wanted))
 
 
