@@ -191,9 +191,10 @@ void Compare(const std::string& event, const std::vector<grammar::Role>& roles,
     });
 }
 
-/// Of all events of a map the roles that each label of it would have, in any tier, with all columns
-/// and child tiers filled.
-ComparedRoles Possible(const LabelMap& map, const Events& events) {
+/// Of all events of a map the roles that each label of it would have, in any tier, with those
+/// columns and child tiers `filled` that are so of some label; with all, if there are no labels.
+ComparedRoles Possible(const LabelMap& map, const Events& events,
+                       const std::set<std::string>& filled) {
   std::vector<Label> places(map.tiers.empty() ? 1 : 0);
   for (const auto& [name, tier] : map.tiers)
     if (!tier.ignored && tier.role.empty()) places.push_back({.tier = name});
@@ -202,6 +203,9 @@ ComparedRoles Possible(const LabelMap& map, const Events& events) {
     for (const grammar::Role& column : map.csv.roles) label.roles.push_back({column.name, "?"});
     for (const auto& [_, tier] : map.tiers)
       if (!tier.role.empty() && tier.of == label.tier) label.roles.push_back({tier.role, "?"});
+    std::erase_if(label.roles, [&](const grammar::Role& role) {
+      return !filled.empty() && !filled.contains(role.name);
+    });
     for (const auto& [text, _] : map.labels)
       if (const Meant meant = ByMap(label, text, map, events, Side::kTruth); meant.event)
         Compare(meant.event->event, meant.event->roles, possible);
@@ -343,7 +347,11 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
   // What labels could name: without one of them, what is recognised of it is too much. Where no
   // label is and no map, that is all.
   if (map) {
-    ComparedRoles possible = Possible(*map, events);
+    std::set<std::string> filled;
+    for (const auto& of_take : reading.events_)
+      for (const LabelledEvent& one : of_take)
+        for (const grammar::Role& role : one.event.roles) filled.insert(role.name);
+    ComparedRoles possible = Possible(*map, events, filled);
     reading.compared_.merge(possible);
   } else if (reading.compared_.empty()) {
     for (const EventSignature& event : events) reading.compared_[event.name] = event.roles;

@@ -39,5 +39,39 @@ TEST_F(Labels, TicksAreOnlyOfWhatIsFound) {
   EXPECT_EQ(Read("a.jsonl", "{\"event\": \"x\", \"begin_s\": 1, \"end_s\": 2}\n"), "1..2 x; ");
 }
 
+// No label of such an event fails to name what its labels would name.
+TEST_F(Labels, AnEventWithoutLabelsHasTheRolesThatItsLabelsWouldHave) {
+  const auto roles = [&](const std::string& map_text, const std::string& rows) {
+    const auto map = Map(map_text);
+    if (!map) return grammar::Format(map.error());
+    const auto file = ReadLabels(File("a.csv", "begin_s,end_s,label,tier,noun\n" + rows), map->csv);
+    const auto reading = LabelReading::Of({*file}, &*map, kEvents);
+    if (!reading) return grammar::Format(reading.error());
+    const auto compared = reading->compared().find("reaching");
+    return compared == reading->compared().end()
+               ? "none"
+               : fmt::format("{}", fmt::join(compared->second, " "));
+  };
+  const std::string labels =
+      "labels:\n  reach: {event: reaching}\n  hold: {event: grasping, object: cup}\n";
+  const std::string hands = "tiers:\n  right: {hand: right_hand}\n  left: {hand: left_hand}\n";
+  for (const char* rows : {"", "1,2,hold,right,\n", "1,2,hold,left,cup\n"}) {
+    EXPECT_EQ(roles(hands + "  notes: ignore\n" + labels, rows), "hand") << rows;
+    EXPECT_EQ(roles("columns: {object: noun}\n" + hands + labels, rows), "hand object") << rows;
+    EXPECT_EQ(roles(hands + labels + "  look: {event: reaching, object: cup}\n", rows), "hand");
+    EXPECT_EQ(roles(hands + "  table: {object: table}\n" + labels, rows), "");
+    EXPECT_EQ(roles(hands + "  things: {role: object, of: right}\n" + labels, rows), "hand");
+    EXPECT_EQ(roles("tiers:\n  right: {hand: right_hand}\n  left: ignore\n"
+                    "  things: {role: object, of: right}\n" +
+                        labels,
+                    rows),
+              "hand object");
+  }
+  EXPECT_EQ(roles("columns: {hand: noun}\n" + labels, "1,2,hold,,\n"), "") << "none fills it";
+  EXPECT_EQ(roles("columns: {hand: noun}\n" + labels, "1,2,hold,,right_hand\n"), "hand");
+  EXPECT_EQ(roles(labels, ""), "");
+  EXPECT_EQ(roles(hands + labels, "1,2,reach,right,\n"), "hand") << "as its label";
+}
+
 }  // namespace
 }  // namespace prehend::exchange::of_labels
