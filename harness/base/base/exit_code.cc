@@ -13,6 +13,7 @@ ExitCode CodeOf(std::string_view text) {
                                              "No space left on device",
                                              "Disk quota exceeded",
                                              "disk I/O error",
+                                             "Input/output error",
                                              "Too many open files",
                                              "Cannot allocate memory",
                                              "Resource temporarily unavailable",

@@ -359,8 +359,9 @@ Database::Database(const std::string& path, Mode mode) {
   const bool writes = mode == Mode::kWrite;
   std::string options;
   // A finished file can be read where nothing can be written, not even a lock.
-  const std::string folder = std::filesystem::absolute(path).parent_path().string();
-  if (!writes && access(folder.c_str(), W_OK) != 0 && !std::filesystem::exists(path + "-journal"))
+  const fs::path whole = fs::weakly_canonical(fs::absolute(path));  // a link's journal is there
+  const std::string folder = whole.parent_path().string();
+  if (!writes && access(folder.c_str(), W_OK) != 0 && !fs::exists(whole.string() + "-journal"))
     options = "?immutable=1";
   if (writes && !std::filesystem::exists(path) && access(folder.c_str(), W_OK) != 0)
     throw DatabaseError(std::string("its folder cannot be written: ") + std::strerror(errno));

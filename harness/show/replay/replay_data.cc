@@ -332,7 +332,7 @@ class Span {
     const Pose &a = poses_[first_], &b = poses_[last_];
     const double share = ShareAt(i);
     spare_m_ = kTrackTolerance_m - (poses_[i].p_m - (a.p_m + share * (b.p_m - a.p_m))).norm();
-    if (spare_m_ < 0) return false;
+    if (!(spare_m_ >= 0)) return false;
     spare_rad_ = 0;
     if (turn_ < kSmall) {
       // A straight line between the quaternions is off by less than turn^3 / 30 (0.0003 rad), and
