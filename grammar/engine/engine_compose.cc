@@ -77,7 +77,10 @@ Moment Engine::BeginsFrom(const RuleInstance& instance) const {
     Moment from = PartsBeginFrom(instance.rule, instance.entities);
     for (std::size_t part = 0; part < RuleOf(instance).As<ComposeRule>().may_begin(); ++part) {
       const std::vector<Span>& spans = instance.As<ComposeState>().parts[part];
-      if (!spans.empty()) from = Earlier(from, spans.front().begin);
+      for (const Span& span : spans) {
+        from = Earlier(from, span.begin);
+        if (!RuleOf(instance).As<ComposeRule>().has_choices) break;
+      }
     }
     return from;
   }

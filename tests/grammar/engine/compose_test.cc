@@ -241,6 +241,17 @@ TEST(Compose, AnIntervalOfEitherStandsForThePart) {
       "");
 }
 
+// While it is not complete, another rule that asks about it waits from the begin of the longest on.
+TEST(Compose, AnIntervalOfEitherMayBeginBeforeAShorterOne) {
+  const std::string rule = R"(while a(h, c) and not w(h, c, t)
+condition late(h: Hand, t: Movable) while touching(h, t) bridging 10 ms
+condition w(h: Hand, c: Cup, t: Movable) all of p: b(h, t) or a(h, c), q: late(h, t) where p contains q within 50 ms
+)";
+  EXPECT_EQ(Found(rule, ".....##########..............", "........##..................."), "");
+  EXPECT_EQ(Found(rule, ".....##########..............", "..........................##."),
+            "[5,15) ");
+}
+
 // `any` may be whom the other part names: one interval is not two.
 TEST(Compose, WhatIsNamedTwiceHappensTwiceAlsoByAny) {
   for (const std::string parts :
