@@ -313,8 +313,10 @@ FrameNumber Engine::KnownOf(InstanceId follower) {
   Following& following = following_[instance.index];
   const bool asks_followers = std::exchange(asks_followers_, true);
   if (following.is_ruled_out) {
+    // Beyond that nothing can begin, but what it looks at itself may tell that nothing does.
     following.resumes = std::max(following.resumes, std::min(RuledOutUntil(instance), end));
-    instance.next = following.resumes;
+    instance.next = std::max(instance.next, following.resumes);
+    while (instance.next < end && StepFrame(instance)) continue;
   } else if (following.asks_only_others) {
     following.resumes = std::max(following.resumes, std::min(StaysUntil(instance), end));
     instance.next = following.resumes;

@@ -14,6 +14,8 @@
 #include "grammar/monitor.h"
 #include "grammar/program/program.h"
 #include "tests/grammar/reference/reference_trial.h"
+#include "tests/grammar/scene.h"
+#include "tests/grammar/thorough.h"
 
 namespace prehend::grammar {
 namespace {
@@ -300,6 +302,40 @@ TEST(Reference, BridgingOnlyAddsTime) {
       ASSERT_TRUE(Covers(found[name + "9"], found[name + "4"])) << kRules[i];
     }
   }
+}
+
+// `rule1` asks about others that are known late, but what it measures itself is known sooner.
+TEST(Reference, WhoFollowsIsKnownNoLater) {
+  const auto program = testing::CompileText(R"(grammar random
+event rule0(x: Hand, p: P, q: Q, r: R)
+  from touching(x, r) begins without (touching(x, q) or touching(x, r)) ends within 5 ms lasting 1 ms requires touching(x, p)
+event rule1(x: Hand, q: Q, r: R)
+  while rule0(x, any, q, r) until rate(height(x), 2 ms) >= rate(height(x), 2 ms)@begin + -250 m/s
+event rule2(x: Hand, p: P, q: Q, r: R)
+  from ((touching(x, p) or rule1(x, q, r)) ends) without ((touching(x, q) or rule1(x, q, r)) begins) within 5 ms
+  during ((rate(height(x), 9 ms) >= -250 m/s or touching(x, r)) or height(x) >= height(x)@begin + 1 m)
+  lasting 5 ms requires touching(x, r)
+)");
+  testing::RandomEpisode episode;
+  const std::array<std::string, 4> touches = {
+      ".###....###....................", "....#...........#...##...##....",
+      "...#....####............###...#", "#################...##########."};
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    for (const char one : touches[i]) episode.touches[i].push_back(one == '#');
+  }
+  for (const char high : std::string("0000002222222222222222222222200"))
+    episode.height_m.push_back(high - '0');
+  episode.lost.assign(episode.height_m.size(), false);
+  episode.ticks = {0,  1,  2,  3,  4,  10, 11, 13, 14, 16, 17, 18, 19, 20, 26, 27,
+                   28, 34, 35, 36, 37, 40, 41, 42, 43, 44, 50, 51, 52, 53, 58, 59};
+  const auto decided = [&](const std::shared_ptr<const Program>& by) {
+    Monitor monitor(by, testing::RandomEntityTable());
+    testing::EpisodeFeed feed(episode, monitor);
+    std::vector<Event> events;
+    while (!feed.done()) feed.Step(testing::Shown::kWhole, events);
+    return testing::Lines(events, *program);
+  };
+  EXPECT_EQ(decided(program), decided(testing::Thorough(*program)));
 }
 
 // `reference_run` does the same for as many ticks as one likes.

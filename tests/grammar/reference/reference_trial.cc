@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
+#include <tuple>
 
 #include "grammar/program/program.h"
 #include "tests/grammar/thorough.h"
@@ -112,22 +113,46 @@ class Trial {
       Mismatch("an event is decided before its end, or events come in the wrong order", &episode);
   }
 
-  // Whoever is woken by everything decides the same at the same ticks, however frames are shown.
+  // However frames are shown, the same is decided at the same ticks; where everybody is woken by
+  // everything, the same, too, and never sooner.
   void WatchThoroughly(const RandomEpisode& episode, const std::vector<Event>& plain,
                        const std::vector<Event>& mixed) {
     Monitor thorough(thorough_, RandomEntityTable());
     EpisodeFeed feed(episode, thorough);
     std::vector<Event> events;
     while (!feed.done()) feed.Step(Shown::kWhole, events);
-    const std::vector<std::string> expected = Lines(events, *program_);
-    for (const std::vector<Event>* found : {&plain, &mixed}) {
-      const std::vector<std::string> lines = Lines(*found, *program_);
-      const auto [one, other] = std::ranges::mismatch(expected, lines);
-      if (one == expected.end() && other == lines.end()) continue;
-      Mismatch("with all awake:    " + (one == expected.end() ? "nothing" : *one) +
-                   "\nas few as may be: " + (other == lines.end() ? "nothing" : *other) + "\n",
-               &episode);
+    Compare("as whole frames: ", plain, "as changes:      ", mixed, &episode);
+    const std::vector<Event> sooner = WithTicksOf(plain, events);
+    Compare("with all awake:    ", events, "as few as may be: ", sooner, &episode);
+  }
+
+  // The events with the ticks at which the others were decided, if those are no sooner.
+  static std::vector<Event> WithTicksOf(std::vector<Event> events,
+                                        const std::vector<Event>& thorough) {
+    for (Event& event : events) {
+      const auto same = std::ranges::find_if(thorough, [&](const Event& other) {
+        return other.rule == event.rule && other.roles == event.roles &&
+               other.interval == event.interval;
+      });
+      if (same != thorough.end()) event.decided = std::max(event.decided, same->decided);
     }
+    std::ranges::stable_sort(events, [](const Event& a, const Event& b) {
+      return std::tie(a.decided, a.interval.begin, a.rule, a.roles) <
+             std::tie(b.decided, b.interval.begin, b.rule, b.roles);
+    });
+    return events;
+  }
+
+  void Compare(const std::string& first, const std::vector<Event>& expected,
+               const std::string& second, const std::vector<Event>& found,
+               const RandomEpisode* episode) {
+    const std::vector<std::string> lines = Lines(expected, *program_),
+                                   others = Lines(found, *program_);
+    const auto [one, other] = std::ranges::mismatch(lines, others);
+    if (one == lines.end() && other == others.end()) return;
+    Mismatch(first + (one == lines.end() ? "nothing" : *one) + "\n" + second +
+                 (other == others.end() ? "nothing" : *other) + "\n",
+             episode);
   }
 
   std::mt19937_64& random() { return random_; }
