@@ -179,13 +179,13 @@ class DefinitionLowering {
     if (d_.within) LowerWithin(*d_.within);
   }
 
-  // What is true and what is false at one frame, as far as it is known.
+  // What is true at one frame, and what, negated, is not true: false, or not known.
   struct Claim {
     NodeId node;
     bool negated = false;
   };
   bool CanBe(std::initializer_list<Claim> claims) {
-    Bounds bounds(program_, Here());
+    Bounds bounds(program_, Here(), /*denies=*/std::ranges::none_of(claims, &Claim::negated));
     const auto fits = [&](const Claim& claim) {
       return claim.node == kNone || bounds.Add(claim.node, claim.negated);
     };
