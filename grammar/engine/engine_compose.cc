@@ -189,7 +189,7 @@ FrameNumber Engine::PartsSettled(const RuleInstance& composition) const {
     const InstanceId index = instances_.Find(composition, part);
     if (index != kNone) {
       settled = std::min(settled, Settled(instances_[index]));
-    } else if (rule.has_choices) {
+    } else {
       const Reference& reference = RuleOf(composition).references[static_cast<std::size_t>(part)];
       settled = std::min(settled, SettledOfNone(reference, composition.entities));
     }

@@ -252,6 +252,16 @@ condition w(h: Hand, c: Cup, t: Movable) all of p: b(h, t) or a(h, c), q: late(h
             "[5,15) ");
 }
 
+// Its first interval is out later than one that ends later.
+TEST(Compose, WaitsForACompositionThatIsNotMadeYet) {
+  const std::string rule = R"(all of x: w(h, c), y: b(h, t) within 50 ms
+condition late(h: Hand, c: Cup) while touching(h, c) bridging 10 ms
+condition w(h: Hand, c: Cup) compose p: late(h, c) where p equals p
+)";
+  EXPECT_EQ(Found(rule, ".....###....................", ".....####..................."), "[5,9) ");
+  EXPECT_EQ(Found(rule, ".....###....................", "...##......................."), "[3,8) ");
+}
+
 // `any` may be whom the other part names: one interval is not two.
 TEST(Compose, WhatIsNamedTwiceHappensTwiceAlsoByAny) {
   for (const std::string parts :
