@@ -332,8 +332,11 @@ bool Engine::AwaitOthers(RuleInstance& instance) {
     if (instances_.KnownOf(other) > instance.next) return;
     other.awaited = instance.waits = true;
     if (!other.follows) return;
+    const FrameNumber next = other.next, known = other.known;
     StopWaiting(other);
-    Hold(other);  // its turn in this frame is over
+    other.next = next;  // its turn in this frame is over, so what it decided counts
+    other.known = known;
+    Hold(other);
   });
   if (!instance.waits) return false;
   Hold(instance);
