@@ -142,12 +142,14 @@ bool Bounds::AddAtom(NodeId index, bool negated) {
                 negated ? 0 : 1);
 }
 
-// It is false, or else unknown: between the two.
+// It is false, or else unknown: between the two. That a rule does not hold is unknown where nobody
+// sees it, and yet it does not.
 bool Bounds::AddNotKnown(NodeId index) {
   if (!denies_) return true;
   bool is_not = false;
   for (; program_.nodes[index].op == Op::kNot; index = program_.nodes[index].args[0])
     is_not = !is_not;
+  if (is_not && program_.nodes[index].op == Op::kHolds) return true;
   return Narrow(Signature(program_, rule_, index), {.low = 0, .high = 1},
                 is_not ? Op::kGreater : Op::kLess, is_not ? 0 : 1);
 }

@@ -220,7 +220,7 @@ class DefinitionLowering {
   void CheckSince() {
     const UntilSinceRule& rule = As<UntilSinceRule>();
     if (rule.until == kNone || rule.since == kNone) return;
-    Bounds before(program_, Here());
+    Bounds before(program_, Here(), /*denies=*/false);
     if (before.Add(rule.since) && before.AddBefore(rule.until) && before.SomeAlternativeFits())
       return;
     lowering_.ComplainOrWarn(d_.second.place,
