@@ -123,7 +123,9 @@ class Evaluator {
   double ClosingSpeed(int hand, int object, FrameNumber frame) const;
   double SurfaceSpeed(int hand, FrameNumber frame) const;
   bool SensorSet(const Node& node, const View& view) const;
-  bool IsInside(const Node& node, const View& view) const;
+  bool HasCentreOf(int room, int who, FrameNumber frame) const;
+  double LowestPoint_m(int entity, FrameNumber frame) const;
+  bool IsInside(int who, int room, FrameNumber frame) const;
   bool IsNearest(const Node& node, const View& view) const;
   double Weight(int entity) const;
   /// How something lies to a part of something else.

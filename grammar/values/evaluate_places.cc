@@ -19,16 +19,32 @@ double DistanceToSurface_m(const Vector3d& p_W, const EntityInfo& member, const 
   return outside.norm();
 }
 
-bool Evaluator::IsInside(const Node& node, const View& view) const {
-  const auto who = static_cast<std::size_t>(Entity(node, view, 0)),
-             room = static_cast<std::size_t>(Entity(node, view, 1));
-  const EntityInfo& of = entity_table_.entities[room];
-  const EntitySample& look = history_.Look(static_cast<int>(who), view.frame);
-  const EntitySample& at = history_.Look(static_cast<int>(room), view.frame);
-  const Vector3d centre_W = look.p_WB_m + look.q_WB * entity_table_.entities[who].p_BC_m;
+// The centre of one's box is in the other's.
+bool Evaluator::HasCentreOf(int room, int who, FrameNumber frame) const {
+  const EntityInfo& of = entity_table_.entities[static_cast<std::size_t>(room)];
+  const EntitySample& look = history_.Look(who, frame);
+  const EntitySample& at = history_.Look(room, frame);
+  const Vector3d centre_W =
+      look.p_WB_m + look.q_WB * entity_table_.entities[static_cast<std::size_t>(who)].p_BC_m;
   const Vector3d away_m = at.q_WB.conjugate() * (centre_W - at.p_WB_m) - of.p_BC_m;
   if (of.round) return away_m.norm() <= of.half_size_m.x();
   return (away_m.cwiseAbs().array() <= of.half_size_m.array()).all();
+}
+
+// Of its box.
+double Evaluator::LowestPoint_m(int entity, FrameNumber frame) const {
+  const EntityInfo& of = entity_table_.entities[static_cast<std::size_t>(entity)];
+  const EntitySample& look = history_.Look(entity, frame);
+  const Vector3d up_B = look.q_WB.conjugate() * Vector3d::UnitZ();
+  return look.p_WB_m.z() + up_B.dot(of.p_BC_m) - up_B.cwiseAbs().dot(of.half_size_m);
+}
+
+// Of two things that have each other's centre, the lower one is round the other, as a cup is round
+// a bottle.
+bool Evaluator::IsInside(int who, int room, FrameNumber frame) const {
+  if (!HasCentreOf(room, who, frame)) return false;
+  return !HasCentreOf(who, room, frame) || !instances_.IsA(who, "Thing") ||
+         !instances_.IsA(room, "Thing") || LowestPoint_m(who, frame) >= LowestPoint_m(room, frame);
 }
 
 double Evaluator::AwayFrom_m(int who, int whom, FrameNumber frame) const {

@@ -483,6 +483,29 @@ TEST(Signals, InsideAsksTheCentreOfTheBox) {
   EXPECT_TRUE(holds({0.3, 0.3, 0.1}));
 }
 
+TEST(Signals, OfTwoInEachOtherTheLowerOneIsRoundTheOther) {
+  const auto program =
+      testing::CompileText("grammar t\nevent in(a: Movable, b: Movable) while inside(a, b)");
+  Scene scene;
+  scene.entity_table.entities[Scene::kTray].half_size_m = {0.05, 0.05, 0.05};
+  scene.entity_table.entities[Scene::kCup].half_size_m = {0.02, 0.02, 0.06};
+  const auto found = [&](double cup_z_m) {
+    scene.looks[Scene::kCup].p_WB_m = {0, 0, cup_z_m};
+    scene.looks[Scene::kTray].p_WB_m = {0, 0, 0.05};
+    Monitor monitor(program, scene.entity_table);
+    std::vector<Event> events;
+    monitor.Advance(scene.At(0), events);
+    monitor.Finish(10, events);
+    std::string text;
+    for (const Event& event : events)
+      text += event.roles[0] == Scene::kCup ? "cup in tray " : "tray in cup ";
+    return text;
+  };
+  EXPECT_EQ(found(0.065), "cup in tray ") << "a bottle in a cup";
+  EXPECT_EQ(found(0.055), "tray in cup ") << "a ring around a bottle";
+  EXPECT_EQ(found(0.11), "tray in cup ") << "the centre of one alone is in the other";
+}
+
 // Where frames are lost, the window around the frame before an edge reaches far back. The cup falls
 // from one frame to the next; 5 ms without a frame later the window no longer shows it.
 TEST(Signals, WindowsReachBackOverLostFrames) {
