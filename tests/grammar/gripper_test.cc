@@ -328,7 +328,7 @@ TEST(FurnitureByHolder, WhoHoldsTheHandleOpensTheDrawer) {
 
 // It opens or shuts at half of its range per second, to the end or to 0.2 s before it.
 TEST(Joints, WhatStillMovesWhenTheEpisodeEndsIsOpenThen) {
-  for (const double frame_s : {0.002, 1.0 / 30, 0.05}) {
+  for (const double frame_s : {0.002, 1.0 / 30, 0.05, 1.0 / 15, 0.1}) {
     for (const double stop_s : {2.0, 1.8}) {
       for (const bool opens : {true, false}) {
         const auto open = [&](double s) {
@@ -347,6 +347,19 @@ TEST(Joints, WhatStillMovesWhenTheEpisodeEndsIsOpenThen) {
           EXPECT_NEAR(found.at(label).second, stop_s, frame_s + 0.002) << frame_s;
       }
     }
+  }
+}
+
+// No frame is within 50 ms of another.
+TEST(Joints, AMotionIsOneHoweverRareFramesAre) {
+  const auto open = [](double s) { return Line({{1, 0}, {2.8, 0.9}, {4, 0.9}, {5.5, 0.1}}, s); };
+  const Box drawer = {
+      .name = "drawer", .size_m = {0.3, 0.4, 0.2}, .at = Stays({0.2, 0, 0.4}), .open = open};
+  for (const double frame_s : {0.0502, 0.06, 0.0667, 0.08, 0.1}) {
+    const Found found = Watch("joints", {}, {drawer}, 7, frame_s);
+    ExpectGrasp(found, "opening(drawer)", 1, 2.8, frame_s + 0.002);
+    ExpectGrasp(found, "closing(drawer)", 4, 5.5, frame_s + 0.002);
+    EXPECT_FALSE(found.contains("opening(drawer)'") || found.contains("closing(drawer)'"));
   }
 }
 
