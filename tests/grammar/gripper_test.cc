@@ -259,6 +259,18 @@ TEST(SupportFromMotion, OfSeveralThingsBelowThoseThatTouchBear) {
   EXPECT_EQ(supports({a, Cube("b", {0.2, 0, 0.0235}), board}),
             (Labels{"supported_by(a, table)", "supported_by(b, table)", "supported_by(board, a)",
                     "supported_by(board, b)"}));
+  // What lies in a box, a cup or a bowl lies on nothing else, and bears nothing that is round it.
+  for (const double floor_m : {0.001, 0.005, 0.02}) {
+    for (const double high_m : {0.03, 0.06, 0.09}) {
+      const Box bowl{.name = "bowl", .size_m = {0.1, 0.12, 0.1}, .at = Stays({0, 0, 0.05})};
+      const Box ball{.name = "a",
+                     .size_m = {0.04, 0.04, high_m},
+                     .at = Stays({0, 0.01, floor_m + high_m / 2})};
+      EXPECT_EQ(supports({bowl, ball}),
+                (Labels{"supported_by(bowl, table)", "supported_by(a, bowl)"}))
+          << floor_m << " " << high_m;
+    }
+  }
   // A table that is thought to be 5 cm too low or too high is one as before.
   EXPECT_EQ(supports({Cube("a", {0, 0, 0.0735})}), on_table);
   EXPECT_EQ(supports({Cube("a", {0, 0, -0.0265})}), on_table);
