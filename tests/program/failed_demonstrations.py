@@ -72,7 +72,7 @@ class Take:
 
     def put(self, on, beside=0.0):
         x, y, z = self.cubes[on]
-        self.go([x + beside, y, z + 0.2]).go([x + beside, y, SIZE + z if beside < SIZE else REST], 0.8).wait(0.2)
+        self.go([x + beside, y, z + 0.2]).go([x + beside, y, SIZE + z if abs(beside) < SIZE else REST], 0.8).wait(0.2)
         self.grip(0.0).wait(0.3)
         return self.go([x + beside, y, z + 0.25], 0.6)
 
@@ -212,6 +212,16 @@ def main():
         takes = {"good": stack(Take(True)), "again": again, "fine": stack(fine)}
         causes = causes_of(report(folder, takes, "--json")[0])
         assert {name: because for name, (because, _) in causes.items()} == {"again": EXPECTED[missed]}, causes
+        # It falls from where the fingers begin to open; what stood before it fell was not dropped.
+        def over(high):
+            take = Take(False).take("cube_2")
+            x, y, z = take.cubes["cube_1"]
+            return take.go([x, y, z + 0.2]).go([x, y, z + SIZE + high], 0.8).wait(0.2)
+
+        takes = {"early": over(0.032).lose(0.0), "late": over(0).grip(0.0).wait(0.5).kick("cube_2", [0.1, 0.2, REST])}
+        causes = causes_of(report(folder, {**good, **takes}, "--json")[0])
+        assert {name: because for name, (because, _) in causes.items()} == {"early": EXPECTED[dropped],
+                                                                          "late": EXPECTED[came_off]}, causes
         # Another gripper's name; one failed take alone; nothing is made up where nothing is seen.
         causes = causes_of(report(folder, {"a": missed(False, 0, "left_arm"), "b": stack(Take(False))}, "--json")[0])
         assert causes["a"][0] == "cube_3 missed, left_arm closed on nothing", causes

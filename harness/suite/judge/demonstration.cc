@@ -17,7 +17,8 @@ using grammar::NamedEvent;
 using grammar::Tick;
 
 // docs/robot-demonstrations.md says what each is for.
-constexpr double kHalf = 0.5, kClosed = 0.9, kOpened = 0.05;  // of the way of a gripper
+constexpr double kHalf = 0.5, kClosed = 0.9, kOpened = 0.05,
+                 kOpens = 0.02;  // of the way of a gripper
 constexpr double kNear_m = 0.1, kFall_m = 0.03, kMoved_m = 0.02;
 constexpr double kPause_s = 0.3, kSoon_s = 0.5, kAfter_s = 1;
 
@@ -67,6 +68,17 @@ class Facts {
     Each(begin, end,
          [&](const auto& frame) { least = std::min(least, TriggerIn(frame, IndexOf(hand))); });
     return least;
+  }
+
+  /// The last frame before it opens; `end` if it does not before.
+  Tick Opens(const std::string& hand, Tick begin, Tick end) const {
+    double closed = 0;
+    Tick opens = end;
+    Each(begin, end, [&](const auto& frame) {
+      closed = std::max(closed, TriggerIn(frame, IndexOf(hand)));
+      if (TriggerIn(frame, IndexOf(hand)) >= closed - kOpens) opens = frame.tick;
+    });
+    return opens;
   }
 
   /// The thing next to a hand; "" if none is near.
@@ -186,9 +198,14 @@ class Reader {
     const Tick half = of.begin + (of.end - of.begin) / 2;
     const bool opened = facts_.LeastTrigger(of.hand, when.begin, when.end) <
                         facts_.LeastTrigger(of.hand, half, half) - kOpened;
-    const double fall_m = facts_.At(of.object, of.end).z() -
-                          facts_.Lowest(of.object, of.end, of.end + facts_.Ticks(kAfter_s));
-    if (opened && !(fall_m >= kFall_m)) return;
+    const Tick opens = opened ? facts_.Opens(of.hand, when.begin, of.end) : of.end;
+    const double fall_m = facts_.At(of.object, opens).z() -
+                          facts_.Lowest(of.object, opens, of.end + facts_.Ticks(kAfter_s));
+    const bool rests = std::ranges::any_of(supports_, [&](const Pair& support) {
+      return support.first == of.object && support.event->interval.begin <= opens &&
+             support.event->interval.end > of.end;
+    });
+    if (opened && (rests || !(fall_m >= kFall_m))) return;
     read_.mishaps.push_back(
         {of.end, of.object + (opened ? " dropped by " : " slipped out of ") + of.hand, of.object,
          Question("--event", of.event, of.hand, of.object, of.begin)});
