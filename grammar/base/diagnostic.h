@@ -48,6 +48,9 @@ std::string Format(const Diagnostics& diagnostics);
 Diagnostic DiagnosticAt(std::string_view file, std::string_view text, Place place,
                         std::string message, std::string hint = {});
 
+/// Without its end; "" behind the last one.
+std::string_view LineOf(std::string_view text, int line);
+
 /// Sets `source_line` and `caret_column`: the line, cut around the column if it is long.
 void ShowLine(Diagnostic& diagnostic, std::string_view line, int column);
 

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/text_file.h"
 
 namespace prehend {
@@ -135,15 +136,7 @@ std::vector<std::string> NamesIn(const std::string& folder, std::string_view end
   return names;
 }
 
-std::vector<std::string> SplitGrammars(const std::string& joined) {
-  std::vector<std::string> grammars;
-  for (std::size_t begin = 0; begin <= joined.size();) {
-    const std::size_t end = std::min(joined.find('+', begin), joined.size());
-    grammars.push_back(joined.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return grammars;
-}
+std::vector<std::string> SplitGrammars(const std::string& joined) { return SplitAt(joined, '+'); }
 
 std::vector<std::string> GrammarNames(const std::string& root) {
   return Names(GrammarFolders(root), kGrammarEnding);

@@ -67,6 +67,13 @@ std::string ToText(const pugi::xml_document& document, Layout layout) {
   return std::move(text).str();
 }
 
+std::string CsvCell::Value() const {
+  std::string value(text);
+  for (std::size_t at = 0; in_quotes && (at = value.find("\"\"", at)) != value.npos; ++at)
+    value.erase(at, 1);
+  return value;
+}
+
 std::vector<CsvCell> CsvCellsOf(std::string_view line, char separator) {
   std::vector<CsvCell> cells;
   for (std::size_t begin = 0; begin <= line.size();) {
@@ -89,7 +96,8 @@ std::vector<CsvCell> CsvCellsOf(std::string_view line, char separator) {
     std::size_t first = in_quotes ? open + 1 : begin, last = in_quotes ? quote : end;
     while (first < last && (line[first] == ' ' || (line[first] == '"' && !fault.empty()))) ++first;
     while (last > first && line[last - 1] == ' ') --last;
-    cells.push_back({line.substr(first, last - first), static_cast<int>(first) + 1, fault});
+    cells.push_back(
+        {line.substr(first, last - first), static_cast<int>(first) + 1, fault, in_quotes});
     begin = end + 1;
   }
   return cells;

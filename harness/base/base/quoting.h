@@ -39,6 +39,9 @@ struct CsvCell {
   std::string_view text;        ///< without blanks and quotes around it
   int column = 1;               ///< in bytes, from 1
   std::string_view fault = {};  ///< what is wrong with its quotes, or ""
+  bool in_quotes = false;
+
+  std::string Value() const;  ///< of two quotes in quotes one stays
 };
 
 /// A cell may stand in quotes, and then hold separators; two quotes are one that does not end it.

@@ -27,6 +27,7 @@ namespace {
 using grammar::Diagnostic;
 using grammar::DiagnosticAt;
 using grammar::Diagnostics;
+using grammar::LineOf;
 using grammar::Place;
 using Kind = YamlNode::Kind;
 
@@ -215,12 +216,6 @@ Diagnostics CheckTabs(const std::string& file, const std::string& text) {
       1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<long>(tab), '\n'));
   return {DiagnosticAt(file, text, {line, static_cast<int>(tab - line_start) + 1}, "tab character",
                        "indent and separate with spaces")};
-}
-
-std::string_view LineOf(std::string_view text, int line) {
-  for (; line > 1 && !text.empty(); --line)
-    text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
-  return text.substr(0, text.find('\n'));
 }
 
 /// "#ff0000" of the last line up to this one that has a colour where a value begins; or "".

@@ -42,9 +42,6 @@ ValueRule NumbersFrom(double least, double most);
 ValueRule OneOf(const std::vector<std::string>& words);
 ValueRule SomeOf(const std::vector<std::string>& words);
 
-/// The words between commas.
-std::vector<std::string> WordsOf(const std::string& text);
-
 /// One thing that can be typed. A name with dashes is an option, any other name is an argument,
 /// which is recognised by its place. An option without placeholder is a flag.
 struct Option {
@@ -119,7 +116,8 @@ Option PaceOption();             ///< of a recogniser
 Option RecogniserLimitOption();  ///< for an episode
 Option SettingsOption();         ///< of a grammar and a scenario
 Option ParametersOption();       ///< of a grammar alone
-Option OutputOption(const std::string& help, const std::string& placeholder = "FILE");
+Option OutputOption(const std::string& help, const std::string& placeholder = "FILE",
+                    ValueRule rule = {});
 Option JobsOption();
 Option FilterOption();
 /// The program's help tells of both limits and of their defaults.

@@ -57,23 +57,13 @@ ValueRule OneOf(const std::vector<std::string>& words) {
 
 ValueRule SomeOf(const std::vector<std::string>& words) {
   return {fmt::format("{}", fmt::join(words, ", ")), [words](const std::string& value) {
-            for (const std::string& word : WordsOf(value)) {
+            for (const std::string& word : SplitAt(value, ',')) {
               if (std::ranges::count(words, word) == 0)
                 return fmt::format("found '{}', wanted some of {}, with commas between them", word,
                                    fmt::join(words, ", "));
             }
             return std::string();
           }};
-}
-
-std::vector<std::string> WordsOf(const std::string& text) {
-  std::vector<std::string> words;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    words.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return words;
 }
 
 std::vector<Option> InGroup(const std::string& group, std::vector<Option> options) {
@@ -172,11 +162,12 @@ Option SettingsOption() {
   return option;
 }
 
-Option OutputOption(const std::string& help, const std::string& placeholder) {
+Option OutputOption(const std::string& help, const std::string& placeholder, ValueRule rule) {
   return {.name = "--output",
           .help = help,
           .placeholder = placeholder,
           .other_name = "-o",
+          .rule = std::move(rule),
           .is_output = true};
 }
 

@@ -13,7 +13,8 @@ namespace prehend::cli {
 namespace {
 
 bool Looks(const ParsedOptions& options, const char* word) {
-  return options.Has("--look") && std::ranges::count(WordsOf(options.Text("--look")), word) > 0;
+  return options.Has("--look") &&
+         std::ranges::count(SplitAt(options.Text("--look"), ','), word) > 0;
 }
 
 /// Of SVG.

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/base/base/atomic_file.h"
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/project_paths.h"
 #include "harness/base/base/quoting.h"
 #include "harness/base/base/visible_stream.h"
@@ -149,11 +150,7 @@ suite::SuiteRequest RequestFrom(const ParsedOptions& options, const CommandConte
 
 std::string Indented(const std::string& text) {
   std::string indented;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    indented += "    " + text.substr(begin, end - begin) + "\n";
-    begin = end + 1;
-  }
+  for (const std::string_view line : LinesOf(text)) indented += fmt::format("    {}\n", line);
   return indented;
 }
 

@@ -9,6 +9,7 @@
 
 #include "grammar/watch_drawing.h"
 #include "harness/base/base/atomic_file.h"
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/text_file.h"
 #include "harness/cli/command/command.h"
 #include "harness/cli/command/picture_options.h"
@@ -183,7 +184,8 @@ tl::expected<std::vector<show::KeyMoment>, ExitCode> MomentsOf(const Kind& kind,
   const episode::RunResult& run = played.run;
   const show::Window window = WindowOf(options, run);
   if (options.Has("--at")) {
-    auto moments = show::NamedMoments(WordsOf(options.Text("--at")), *played.loaded.program, run);
+    auto moments =
+        show::NamedMoments(SplitAt(options.Text("--at"), ','), *played.loaded.program, run);
     if (!moments) return tl::unexpected(Refuse(context, "--at: " + moments.error()));
     if (moments->size() > kMostScenes)
       return tl::unexpected(Refuse(context, fmt::format("--at: found {} moments, wanted at most {}",

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/base/base/atomic_file.h"
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/project_paths.h"
 #include "harness/cli/command/command.h"
 #include "harness/cli/command/picture_options.h"
@@ -75,7 +76,7 @@ show::PictureFormat FormatOf(const ParsedOptions& options) {
     format.height_px = size->height_px;
   }
   for (const std::string& words : options.All("--without")) {
-    for (const std::string& word : WordsOf(words))
+    for (const std::string& word : SplitAt(words, ','))
       for (const Part& part : kParts)
         if (word == part.name) format.*part.shown = false;
   }
@@ -84,7 +85,7 @@ show::PictureFormat FormatOf(const ParsedOptions& options) {
 
 show::PictureChoice ChoiceOf(const ParsedOptions& options) {
   show::PictureChoice choice{.camera = options.Text("--camera"), .all = options.Has("--sheet")};
-  if (options.Has("--at")) choice.at = WordsOf(options.Text("--at"));
+  if (options.Has("--at")) choice.at = SplitAt(options.Text("--at"), ',');
   // A sheet's scenes are small.
   if (choice.all && options.Has("--at") && choice.camera.empty()) choice.camera = "action";
   return choice;
@@ -186,7 +187,7 @@ std::string WhyNotTogether(const ParsedOptions& options) {
       if (options.Has(option)) return fmt::format("{} does not go with {}", option, asked);
     }
   }
-  for (const std::string& look : WordsOf(options.Text("--look"))) {
+  for (const std::string& look : SplitAt(options.Text("--look"), ',')) {
     if (options.Has("--strip") && !look.empty() && look != "transparent")
       return fmt::format("--look {} does not go with --strip", look);
   }
@@ -238,7 +239,7 @@ ExitCode RenderStrip(const ParsedOptions& options, const CommandContext& context
   const episode::RunResult& run = played.run;
   show::Chart chart = show::PhasesChart(loaded.scenario, run, WindowOf(options, run));
   for (const std::string& words : options.All("--without")) {
-    if (std::ranges::count(WordsOf(words), "title") > 0) chart.title.clear();
+    if (std::ranges::count(SplitAt(words, ','), "title") > 0) chart.title.clear();
   }
   return WriteOut(show::ChartSvg(chart, SceneFormatOf(options, "", kComparisonWidth_px).chart),
                   options, loaded.scenario, ".strip.svg", context);

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/project_paths.h"
 #include "harness/base/process/child_process.h"
 #include "harness/cli/command/command.h"
@@ -54,12 +55,8 @@ Answered AskSwipl(const std::string& folder, const std::string& query, int most,
   Answered answered;
   bool is_loaded = false, ended = false;
   std::string loading;  // the file that is read
-  for (std::size_t begin = 0; begin < said.out.size();) {
-    const std::size_t end = std::min(said.out.find('\n', begin), said.out.size());
-    const Json line =
-        Json::parse(said.out.begin() + static_cast<std::ptrdiff_t>(begin),
-                    said.out.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
-    begin = end + 1;
+  for (const std::string_view text : LinesOf(said.out)) {
+    const Json line = Json::parse(text, nullptr, false);
     if (line.is_discarded()) continue;  // cut off
     if (!line.contains("end")) {
       answered.answers.push_back(line);

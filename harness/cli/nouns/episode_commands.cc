@@ -311,16 +311,10 @@ Command ResegmentCommand() {
                         "print only how the events differ from those that were recognised when "
                         "the episode was recorded",
                         OneOf({"recorded"})),
-                  JobsOption(),
-                  GrammarOption(),
-                  ParametersOption(),
-                  {.name = "--output",
-                   .help = "write the events of one recording for an annotation program "
-                           "(docs/labels.md): ELAN (.eaf), Praat (.TextGrid) or .csv",
-                   .placeholder = "FILE",
-                   .other_name = "-o",
-                   .rule = {.range = {}, .problem = LabelsProblem},
-                   .is_output = true},
+                  JobsOption(), GrammarOption(), ParametersOption(),
+                  OutputOption("write the events of one recording for an annotation program "
+                               "(docs/labels.md): ELAN (.eaf), Praat (.TextGrid) or .csv",
+                               "FILE", {.problem = LabelsProblem}),
                   Repeatable(
                       Value("--event", "NAME",
                             "with --output: write this event instead of all; may be repeated")),
@@ -447,11 +441,8 @@ Command KnowledgeCommand() {
           {"episode knowledge suite.episodes -o kb",
            "episode knowledge suite.episodes --episode 'slide/*' --also owl --also neem -o kb"},
       .options = {EpisodesArgument(),
-                  {.name = "--output",
-                   .help = "the folder; default: kb. It gets prehend.ttl, maps/ and episodes/",
-                   .placeholder = "FOLDER",
-                   .other_name = "-o",
-                   .is_output = true},
+                  OutputOption("the folder; default: kb. It gets prehend.ttl, maps/ and episodes/",
+                               "FOLDER"),
                   Repeatable(Value("--also", "owl|neem",
                                    "also as owl (RDF/XML beside each Turtle file) or neem (BSON "
                                    "collections as mongodump writes them); may be repeated",

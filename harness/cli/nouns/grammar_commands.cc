@@ -133,12 +133,8 @@ Command CoverageCommand() {
                             "exit code 1 if more than so many percent of the clauses never "
                             "decided both ways",
                             NumbersFrom(0, 100)),
-                      {.name = "--output",
-                       .help = "also write a file of lcov for editors and CI, NAME.info",
-                       .placeholder = "FILE",
-                       .other_name = "-o",
-                       .rule = {.range = {}, .problem = CoverageFileProblem},
-                       .is_output = true},
+                      OutputOption("also write a file of lcov for editors and CI, NAME.info",
+                                   "FILE", {.problem = CoverageFileProblem}),
                       JsonOption()},
           .run = RunCoverage};
 }

@@ -178,11 +178,6 @@ class JsonWalk {
 constexpr std::size_t kMostNames = 50;  ///< in an error
 constexpr std::string_view kBlanks = " \t";
 
-std::string_view Trimmed(std::string_view text, std::string_view of) {
-  const std::size_t begin = std::min(text.find_first_not_of(of), text.size());
-  return text.substr(begin, text.find_last_not_of(of) + 1 - begin);
-}
-
 bool IsQuoted(std::string_view text) {
   return text.size() > 1 && (text.front() == '\'' || text.front() == '"') &&
          text.back() == text.front();
@@ -412,13 +407,9 @@ std::vector<std::string> WithoutBraces(const std::string& text) {
   const std::size_t open = text.find('{'), close = text.find('}', open);
   if (open == std::string::npos || close == std::string::npos) return {text};
   std::vector<std::string> all;
-  for (std::size_t at = open + 1; at <= close;) {
-    const std::size_t end = std::min(text.find(',', at), close);
-    all.push_back(text.substr(0, open) +
-                  std::string(Trimmed(std::string_view(text).substr(at, end - at), kBlanks)) +
+  for (const std::string& part : SplitAt(text.substr(open + 1, close - open - 1), ','))
+    all.push_back(text.substr(0, open) + std::string(Trimmed(part, kBlanks)) +
                   text.substr(close + 1));
-    at = end + 1;
-  }
   return all;
 }
 

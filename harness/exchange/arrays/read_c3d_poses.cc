@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <map>
 
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/arrays/read_array_poses.h"
 #include "harness/exchange/poses/pose_file.h"
@@ -273,11 +274,7 @@ constexpr scenario::BvhLimits kLimits = {.frames = 500'000, .bytes = std::size_t
 int JointCalled(const scenario::BvhFile& bvh, std::initializer_list<std::string_view> words) {
   for (const std::string_view word : words) {
     for (std::size_t i = 0; i < bvh.joints.size(); ++i) {
-      std::string name = bvh.joints[i].name;
-      std::ranges::transform(name, name.begin(), [](unsigned char c) {
-        return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-      });
-      if (name.ends_with(word)) return static_cast<int>(i);
+      if (LowerCase(bvh.joints[i].name).ends_with(word)) return static_cast<int>(i);
     }
   }
   return -1;

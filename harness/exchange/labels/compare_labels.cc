@@ -17,11 +17,6 @@
 
 namespace prehend::exchange {
 
-std::string Trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(" \t\n"), end = text.find_last_not_of(" \t\n");
-  return begin == std::string_view::npos ? "" : std::string(text.substr(begin, end - begin + 1));
-}
-
 grammar::Diagnostic SeveralTakes(const LabelFile& file, const std::string& take) {
   return file.At(
       {1, 1},

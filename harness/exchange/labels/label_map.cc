@@ -46,22 +46,12 @@ void PutInOrder(const EventSignature& event, std::vector<grammar::Role>& roles) 
     std::swap(roles[0].value, roles[1].value);
 }
 
-/// Between double quotes.
-std::string AsYaml(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + "\"";
-}
-
 /// "grasping(right_hand, cup)", "grasping(hand=right_hand)", or the name alone. Nothing, and
 /// `problem`, if it is no event.
 std::optional<grammar::NamedEvent> EventIn(const std::string& text, const Events& events,
                                            std::string& problem) {
   const std::size_t open = text.find('(');
-  const std::string name = Trimmed(std::string_view(text).substr(0, open));
+  const std::string name(Trimmed(std::string_view(text).substr(0, open)));
   const EventSignature* event = FindEvent(events, name);
   if (!event) {
     const std::string near = grammar::NearestName(name, NamesOf(events));
@@ -73,12 +63,8 @@ std::optional<grammar::NamedEvent> EventIn(const std::string& text, const Events
   if (open == std::string::npos) return named;
   const std::size_t close = text.find(')', open);
   std::vector<std::string> values;
-  std::string_view inner = std::string_view(text).substr(open + 1, close - open - 1);
-  for (std::size_t begin = 0; begin <= inner.size();) {
-    const std::size_t end = std::min(inner.find(',', begin), inner.size());
-    values.push_back(Trimmed(inner.substr(begin, end - begin)));
-    begin = end + 1;
-  }
+  for (const std::string& value : SplitAt(text.substr(open + 1, close - open - 1), ','))
+    values.emplace_back(Trimmed(value));
   const bool is_named = std::ranges::all_of(values, [&](const std::string& value) {
     return std::ranges::count(event->roles, value.substr(0, value.find('='))) > 0 &&
            value.find('=') != std::string::npos;
@@ -92,8 +78,10 @@ std::optional<grammar::NamedEvent> EventIn(const std::string& text, const Events
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::size_t equals = is_named ? values[i].find('=') : 0;
     named.roles.push_back(
-        is_named ? grammar::Role{values[i].substr(0, equals), Trimmed(values[i].substr(equals + 1))}
-                 : grammar::Role{event->roles[i], values[i]});
+        is_named
+            ? grammar::Role{values[i].substr(0, equals),
+                            std::string(Trimmed(std::string_view(values[i]).substr(equals + 1)))}
+            : grammar::Role{event->roles[i], values[i]});
   }
   PutInOrder(*event, named.roles);
   if (std::ranges::adjacent_find(named.roles, {}, &grammar::Role::name) != named.roles.end())
@@ -258,7 +246,7 @@ std::vector<Label> LabelsOf(const LabelFile& file, const TakeRows& take, const L
                                                             tier.of, tier.role, child.text)));
       continue;
     }
-    const std::string value = Trimmed(child.text);
+    const std::string value(Trimmed(child.text));
     const auto role = std::ranges::find(parent->roles, tier.role, &grammar::Role::name);
     if (role == parent->roles.end())
       parent->roles.push_back({tier.role, value});
@@ -308,7 +296,7 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
     const LabelFile& file = files[take.file];
     std::vector<LabelledEvent>& of_take = reading.events_.emplace_back();
     for (const Label& label : LabelsOf(file, take, map, problems, reading.warnings_)) {
-      const std::string text = Trimmed(label.text);
+      const std::string text(Trimmed(label.text));
       const bool in_map = map && map->labels.contains(text);
       const Meaning* tier = side == Side::kFound && map && !in_map ? TierOf(label, map) : nullptr;
       if ((tier && tier->ignored) ||

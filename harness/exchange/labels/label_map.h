@@ -15,14 +15,12 @@
 #include "grammar/base/timeline.h"
 #include "grammar/contents.h"
 #include "harness/base/base/located.h"
+#include "harness/base/base/number_text.h"
 #include "harness/base/yaml/located_yaml.h"
 #include "harness/exchange/labels/read_labels.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::exchange {
-
-/// Without blanks around it.
-std::string Trimmed(std::string_view text);
 
 /// The error of a table whose LabelFile::several are not told apart.
 grammar::Diagnostic SeveralTakes(const LabelFile& file, const std::string& take);

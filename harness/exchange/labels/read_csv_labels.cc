@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <limits>
 #include <map>
 #include <optional>
@@ -24,7 +23,6 @@ namespace prehend::exchange {
 namespace {
 
 using grammar::Diagnostics;
-using grammar::Place;
 
 std::optional<double> NumberIn(std::string_view text) {
   if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
@@ -273,7 +271,7 @@ class RowTaker {
     line_ = line;
     for (std::size_t seat = 0; seat < words_.size(); ++seat)
       if (cells_of_[seat].size() < 2 && SeemsToTellTakes(words_[seat]))
-        cells_of_[seat].insert(std::string(cells[seat].text));
+        cells_of_[seat].insert(cells[seat].Value());
     Label label = Row(cells);
     if (columns_.time)
       TakeEnd(std::move(label), cells);
@@ -307,12 +305,12 @@ class RowTaker {
  private:
   Label Row(const std::vector<CsvCell>& cells) const {
     const CsvCell& text = cells[*columns_.label];
-    Label label{.text = std::string(text.text),
-                .tier = columns_.tier ? std::string(cells[*columns_.tier].text) : "",
+    Label label{.text = text.Value(),
+                .tier = columns_.tier ? cells[*columns_.tier].Value() : "",
                 .place = {line_, text.column}};
     for (const auto& [role, seat] : columns_.roles)
-      if (!cells[seat].text.empty()) label.roles.push_back({role, std::string(cells[seat].text)});
-    for (const std::size_t seat : columns_.keys) label.keys.emplace_back(cells[seat].text);
+      if (!cells[seat].text.empty()) label.roles.push_back({role, cells[seat].Value()});
+    for (const std::size_t seat : columns_.keys) label.keys.push_back(cells[seat].Value());
     return label;
   }
 
@@ -432,36 +430,26 @@ char SeparatorOf(std::string_view line) {
   return ',';
 }
 
-/// Of two quotes in a cell in quotes one stays; `own` keeps such texts.
-std::vector<CsvCell> CellsOf(std::string_view row, char separator, std::deque<std::string>& own) {
-  std::vector<CsvCell> cells = CsvCellsOf(row, separator);
-  for (CsvCell& cell : cells) {
-    const std::string_view before = row.substr(0, cell.text.data() - row.data());
-    const std::size_t open = before.find_last_not_of(' ');
-    if (open == std::string_view::npos || before[open] != '"') continue;
-    std::string& whole = own.emplace_back(cell.text);
-    for (std::size_t at = whole.find("\"\""); at != std::string::npos;
-         at = whole.find("\"\"", at + 1))
-      whole.erase(at, 1);
-    cell.text = whole;
-  }
-  return cells;
+std::vector<std::string> WordsOf(std::string_view line, char separator) {
+  std::vector<std::string> words;
+  for (const CsvCell& cell : CsvCellsOf(line, separator)) words.push_back(cell.Value());
+  return words;
 }
 
 bool IsFaulty(const CsvCell& cell) { return !cell.fault.empty(); }
 
 /// Of the row that begins there, and ends at `end` if no cell in quotes goes on in a later line.
 std::vector<CsvCell> RowAt(std::string_view text, std::size_t begin, char separator,
-                           std::size_t& end, std::deque<std::string>& own) {
+                           std::size_t& end) {
   constexpr int kMostLines = 100;  // with quotes
-  std::vector<CsvCell> cells = CellsOf(text.substr(begin, end - begin), separator, own);
+  std::vector<CsvCell> cells = CsvCellsOf(text.substr(begin, end - begin), separator);
   const int last_column = static_cast<int>(end - begin) + 1;
   std::size_t at = end;
   for (int i = 0; i < kMostLines && std::ranges::any_of(cells, IsFaulty); ++i) {
     const std::size_t quote = text.find('"', at);
     if (quote == std::string_view::npos) break;
     at = std::min(text.find('\n', quote), text.size());
-    std::vector<CsvCell> longer = CellsOf(text.substr(begin, at - begin), separator, own);
+    std::vector<CsvCell> longer = CsvCellsOf(text.substr(begin, at - begin), separator);
     if (std::ranges::any_of(longer, IsFaulty)) continue;
     end = at;
     for (CsvCell& cell : longer) cell.column = std::min(cell.column, last_column);
@@ -483,7 +471,6 @@ Diagnostics ReadCsvLabels(LabelFile& file, const CsvReading& how) {
   char separator = ',';
   const std::string_view text = file.text;
   const bool has_no_header = IsLabelTrack(text);
-  std::deque<std::string> own;
   int line_number = 0;
   for (std::size_t begin = 0; begin < text.size() && !(rows && rows->IsFull());) {
     std::size_t end = std::min(text.find('\n', begin), text.size());
@@ -492,9 +479,8 @@ Diagnostics ReadCsvLabels(LabelFile& file, const CsvReading& how) {
     if (++line_number == 1) {
       const bool has_tabs = has_no_header || LowerCase(file.file).ends_with(".tsv");
       separator = has_tabs ? '\t' : SeparatorOf(line);
-      std::vector<std::string> words;
-      const std::string_view head = has_no_header ? "begin_s\tend_s\tlabel" : line;
-      for (const CsvCell& cell : CellsOf(head, separator, own)) words.emplace_back(cell.text);
+      std::vector<std::string> words =
+          WordsOf(has_no_header ? "begin_s\tend_s\tlabel" : line, separator);
       PREHEND_TRY(CsvColumns known, ColumnFinder(file, words, how).Find());
       width = words.size();
       rows.emplace(file, std::move(known), std::move(words));
@@ -504,7 +490,7 @@ Diagnostics ReadCsvLabels(LabelFile& file, const CsvReading& how) {
     if (line.find_first_not_of(" \t") == std::string_view::npos ||
         (has_no_header && line.starts_with('\\')))
       continue;
-    const std::vector<CsvCell> cells = RowAt(text, row, separator, end, own);
+    const std::vector<CsvCell> cells = RowAt(text, row, separator, end);
     begin = end + 1;
     const auto faulty = std::ranges::find_if(cells, IsFaulty);
     if (faulty != cells.end())
@@ -520,24 +506,14 @@ Diagnostics ReadCsvLabels(LabelFile& file, const CsvReading& how) {
 }
 
 std::vector<std::string> HeadOfTable(const std::string& path) {
-  std::vector<std::string> words;
   const Result<std::string> text = ReadTextFile(path);
-  if (!text) return words;
+  if (!text) return {};
   const std::string_view line = std::string_view(*text).substr(0, text->find('\n'));
-  const char separator = LowerCase(path).ends_with(".tsv") ? '\t' : SeparatorOf(line);
-  std::deque<std::string> own;
-  for (const CsvCell& cell : CellsOf(line, separator, own)) words.emplace_back(cell.text);
-  return words;
+  return WordsOf(line, LowerCase(path).ends_with(".tsv") ? '\t' : SeparatorOf(line));
 }
 
 Diagnostics ReadFrameLabels(LabelFile& file, const CsvReading& how) {
-  std::vector<std::string_view> lines;
-  const std::string_view text = file.text;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    lines.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
+  const std::vector<std::string_view> lines = LinesOf(file.text);
   const bool by_frame = how.frames_s.size() > 1 && lines.size() == how.frames_s.size() - 1;
   if (!by_frame && how.rate_hz <= 0)
     return {file.At({},

@@ -513,20 +513,16 @@ std::string ReadEventLine(const json& line, double ticks_per_second, Label& labe
 
 grammar::Diagnostics ReadJsonLabels(LabelFile& file, double ticks_per_second) {
   grammar::Diagnostics problems;
-  const std::string_view text = file.text;
   int number = 0;
   const char* const event =
       ticks_per_second > 0 ? R"({"event": "NAME", "roles": {..}, "begin_tick": N, "end_tick": N})"
                            : R"({"event": "NAME", "roles": {..}, "begin_s": S, "end_s": S})";
-  for (std::size_t begin = 0; begin < text.size() && problems.size() < kMostComplaints;) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const json line = json::parse(text.substr(begin, end - begin), nullptr, false);
-    const bool is_blank =
-        text.substr(begin, end - begin).find_first_not_of(" \t") == std::string_view::npos;
-    begin = end + 1;
+  for (const std::string_view whole : LinesOf(file.text)) {
     Label label{.place = {++number, 1}, .roles = {}};
     std::string problem, wanted = event;
-    if (is_blank) continue;
+    if (problems.size() == kMostComplaints) break;
+    if (Trimmed(whole).empty()) continue;
+    const json line = json::parse(whole, nullptr, false);
     if (!line.is_object()) {
       problem = "it is no JSON object";
     } else if (line.contains("recogniser") && line["recogniser"] != 1) {

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/messages/log_file.h"
 
@@ -17,12 +18,6 @@ namespace {
 constexpr std::size_t kMostFields = 5'000;  ///< of a definition
 constexpr std::size_t kMostNested = 30;     ///< types, one in another
 constexpr std::string_view kBlanks = " \t\r";
-
-std::string_view Trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(kBlanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
-}
 
 bool IsWord(std::string_view text, std::string_view besides = "") {
   const auto is_plain = [&](char c) {
@@ -76,17 +71,18 @@ class DefinitionReader {
     std::vector<Line>* section = &sections_[type];
     bool after_separator = false;
     std::size_t fields = 0;
-    for (int number = 1; !text.empty() && problem_.empty(); ++number) {
-      const std::size_t end = std::min(text.find('\n'), text.size());
-      const std::string_view line = Trimmed(text.substr(0, std::min(end, text.find('#'))));
-      text.remove_prefix(std::min(end + 1, text.size()));
+    int number = 0;
+    for (const std::string_view whole : LinesOf(text)) {
+      const std::string_view line = Trimmed(whole.substr(0, whole.find('#')), kBlanks);
+      ++number;
+      if (!problem_.empty()) return;
       if (line.empty()) continue;
       if (line.size() >= 3 && line.find_first_not_of('=') == std::string_view::npos) {
         after_separator = true;
       } else if (after_separator) {
         if (!line.starts_with("MSG:"))
           return Fail(number, fmt::format("expected 'MSG: ' and a type, found '{}'", Shown(line)));
-        section = &sections_[PlainTypeName(Trimmed(line.substr(4)))];
+        section = &sections_[PlainTypeName(Trimmed(line.substr(4), kBlanks))];
         after_separator = false;
         if (!section->empty()) section = &repeated_;
       } else if (++fields > kMostFields) {
@@ -114,11 +110,7 @@ class DefinitionReader {
     const std::string_view known = TextOfKnownType(name, ros1_);
     const bool has_text = section != sections_.end() && !section->second.empty();
     if (!has_text && !known.empty()) {
-      for (std::size_t at = 0; at < known.size();) {
-        const std::size_t end = std::min(known.find('\n', at), known.size());
-        lines.push_back({line, known.substr(at, end - at)});
-        at = end + 1;
-      }
+      for (const std::string_view one : LinesOf(known)) lines.push_back({line, one});
     } else if (section == sections_.end()) {
       Fail(line, fmt::format("no type '{}' is in it", Shown(name)));
       return 0;
@@ -142,11 +134,11 @@ class DefinitionReader {
     if (blank == std::string_view::npos)
       return Fail(line.number,
                   fmt::format("expected a type and a name, found '{}'", Shown(line.text)));
-    const std::string_view rest = Trimmed(line.text.substr(blank));
+    const std::string_view rest = Trimmed(line.text.substr(blank), kBlanks);
     const std::string_view name = rest.substr(0, rest.find_first_of(" \t\r="));
     if (!IsWord(name))
       return Fail(line.number, fmt::format("expected a name, found '{}'", Shown(rest)));
-    if (Trimmed(rest.substr(name.size())).starts_with('=')) return;  // a constant
+    if (Trimmed(rest.substr(name.size()), kBlanks).starts_with('=')) return;  // a constant
     DefinedField field{.name = std::string(name)};
     std::string_view base = line.text.substr(0, blank);
     if (!TakeMany(base, field))

@@ -17,7 +17,6 @@
 namespace prehend::measure {
 namespace {
 
-using grammar::Interval;
 using grammar::Tick;
 
 /// The segments with the background between them, as pieces with the label "".

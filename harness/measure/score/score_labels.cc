@@ -66,7 +66,7 @@ exchange::LabelMap MapOf(const std::vector<exchange::LabelFile>& files,
   exchange::LabelMap map;
   for (const exchange::LabelFile& file : files) {
     for (const exchange::Label& label : file.labels) {
-      const std::string text = exchange::Trimmed(label.text);
+      const std::string text(Trimmed(label.text));
       if (map.labels.emplace(text, exchange::Meaning{.event = text}).second)
         events.push_back({.name = text, .roles = {"tier"}, .classes = {"Entity"}});
       exchange::Meaning& tier = map.tiers[label.tier];

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "grammar/contents.h"
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/project_paths.h"
 #include "harness/base/process/worker_pool.h"
 #include "harness/episode/episode/episode.h"
@@ -212,13 +213,8 @@ std::string DifferencesText(const std::vector<std::string>& grammars,
 
 std::vector<std::string> EventsIn(const std::vector<std::string>& lists) {
   std::vector<std::string> names;
-  for (const std::string& list : lists) {
-    for (std::size_t begin = 0; begin <= list.size();) {
-      const std::size_t end = std::min(list.find(',', begin), list.size());
-      names.push_back(list.substr(begin, end - begin));
-      begin = end + 1;
-    }
-  }
+  for (const std::string& list : lists)
+    std::ranges::move(SplitAt(list, ','), std::back_inserter(names));
   return names;
 }
 

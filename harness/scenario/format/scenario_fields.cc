@@ -10,6 +10,7 @@
 #include <functional>
 #include <vector>
 
+#include "harness/base/base/number_text.h"
 #include "harness/base/yaml/located_yaml.h"
 #include "harness/base/yaml/struct_format.h"
 #include "harness/base/yaml/yaml_scalar.h"
@@ -254,12 +255,7 @@ std::string YamlWord(const std::string& value) {
   if (value.find_first_not_of(kPlain) == std::string::npos && value != "null" &&
       MeaningOf(plain).string)
     return value;
-  std::string quoted = "\"";
-  for (const char c : value) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + "\"";
+  return InQuotes(value);
 }
 
 /// Where a place begins in the text.

@@ -93,12 +93,10 @@ class CsvReader {
   }
 
   void Read() {
-    const std::string_view text = track.text;
-    for (std::size_t begin = 0; begin < text.size() && diagnostics.size() < kMaxReportedLines;) {
-      const std::size_t end = std::min(text.find('\n', begin), text.size());
+    for (const std::string_view line : LinesOf(track.text)) {
+      if (diagnostics.size() >= kMaxReportedLines) return;
       ++line_;
-      TakeLine(text.substr(begin, end - begin));
-      begin = end + 1;
+      TakeLine(line);
       if (header_ && columns_.empty()) return;  // rows have no meaning without it
     }
     if (!diagnostics.empty()) return;

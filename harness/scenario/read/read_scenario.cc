@@ -225,10 +225,8 @@ Result<Scenario> Resolve(const std::string& file, const YamlDocument& document,
 
 /// What the source has at this place, up to the end of the line.
 std::string_view LineFrom(const Where& where, const YamlDocument& document) {
-  std::string_view rest = document.sources[static_cast<std::size_t>(where.source)].text;
-  for (int line = 1; line < where.place.line; ++line)
-    rest.remove_prefix(std::min(rest.find('\n'), rest.size() - 1) + 1);
-  rest = rest.substr(0, rest.find('\n'));
+  std::string_view rest = grammar::LineOf(
+      document.sources[static_cast<std::size_t>(where.source)].text, where.place.line);
   rest.remove_prefix(std::min(static_cast<std::size_t>(where.place.column - 1), rest.size()));
   return rest;
 }

@@ -66,10 +66,6 @@ const char* Name(Reason::Mark mark) {
   return "";
 }
 
-double Seconds(Tick tick, Tick ticks_per_second) {
-  return static_cast<double>(tick) / static_cast<double>(ticks_per_second);
-}
-
 // JSON has no infinity.
 Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 

@@ -247,11 +247,7 @@ Watched Watch(episode::Episode& episode) {
 }
 
 using grammar::Dimension;
-using grammar::InstanceId;
-using grammar::kNone;
 using grammar::Place;
-using grammar::ReplayMonitor;
-using grammar::Rule;
 using grammar::Tick;
 
 std::string QuantityText(double value, const Dimension& dimension, int digits) {

@@ -328,8 +328,6 @@ AcceptOutcome Acceptance::Pictures() {
   return outcome_;
 }
 
-namespace fs = std::filesystem;
-
 /// How it follows from the definitions, where the golden says something else.
 std::string DerivationLines(const truth::Golden& pending, const std::vector<std::string>& before) {
   std::string text;

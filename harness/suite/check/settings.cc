@@ -11,6 +11,7 @@
 #include <set>
 
 #include "grammar/describe.h"
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/text_file.h"
 #include "harness/base/yaml/located_yaml.h"
 #include "harness/suite/judge/judges.h"
@@ -59,19 +60,10 @@ void AddFile(const std::string& path, Values& values) {
 
 /// What stands after the '=' of a declaration in these lines, or "".
 std::string AsWritten(const std::string& text, const grammar::ProgramParam& param) {
-  std::size_t begin = 0;
-  for (int line = 1; line < param.place.line && begin != std::string::npos; ++line) {
-    begin = text.find('\n', begin);
-    if (begin != std::string::npos) ++begin;
-  }
-  if (begin == std::string::npos) return "";
-  const std::string line = text.substr(begin, text.find('\n', begin) - begin);
+  const std::string_view line = grammar::LineOf(text, param.place.line);
   const std::size_t equals = line.find('=');
   if (equals == std::string::npos || line.find(param.name) > equals) return "";
-  const std::string rest = line.substr(equals + 1, line.find('#') - equals - 1);
-  const std::size_t first = rest.find_first_not_of(" \t\r");
-  if (first == std::string::npos) return "";
-  return rest.substr(first, rest.find_last_not_of(" \t\r") - first + 1);
+  return std::string(Trimmed(line.substr(equals + 1, line.find('#') - equals - 1)));
 }
 
 /// As people wrote it: "30 cm", which is 0.3 m.

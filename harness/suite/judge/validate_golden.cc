@@ -273,8 +273,6 @@ grammar::Diagnostics ValidateGoldenFile(const std::string& path, const std::stri
   return loaded ? ValidateGolden(path, id, *loaded) : loaded.error();
 }
 
-namespace fs = std::filesystem;
-
 std::vector<UnreferencedGolden> FindUnreferencedGoldens(
     const std::vector<episode::ScenarioFile>& all, const std::string& root) {
   std::set<std::string> known;

@@ -25,7 +25,6 @@ namespace {
 
 using grammar::NamedEvent;
 using grammar::Tick;
-using show::Bar;
 using show::Chart;
 using show::Curve;
 using show::Row;

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "harness/base/base/number_text.h"
 #include "harness/truth/claims/claim.h"
 
 namespace prehend::truth {
@@ -41,11 +42,6 @@ bool IsNameLetter(char letter) {
 }
 
 bool IsCapital(char letter) { return letter >= 'A' && letter <= 'Z'; }
-std::string InSmallLetters(std::string word) {
-  for (char& letter : word)
-    if (IsCapital(letter)) letter = static_cast<char>(letter - 'A' + 'a');
-  return word;
-}
 
 /// As a word: "two".
 std::optional<int> NumberNamed(std::string_view word) {
@@ -60,12 +56,6 @@ std::optional<int> NumberNamed(std::string_view word) {
 bool IsRelation(std::string_view word) {
   return word == "then" || word == "while" || word == "lies" || word == "lie" ||
          grammar::AllenNamed(word);
-}
-
-std::string_view Trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(' ');
-  if (begin == std::string_view::npos) return "";
-  return text.substr(begin, text.find_last_not_of(' ') + 1 - begin);
 }
 
 /// A name, a number, or a single other letter; empty at the end.
@@ -376,7 +366,7 @@ class ClaimParser {
       Advance();
     } else if (const std::string capital = WordWithCapitals(); !capital.empty()) {
       Fail(next_.offset, fmt::format("expected {}, found '{}'", wanted, capital),
-           fmt::format("write '{}': names have small letters", InSmallLetters(capital)));
+           fmt::format("write '{}': names have small letters", LowerCase(capital)));
     } else {
       Fail(next_.offset, fmt::format("expected {}, found {}", wanted, Found()));
     }

@@ -17,15 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string Quoted(std::string_view text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + "\"";
-}
-
 void AppendComments(const std::vector<std::string>& comments, std::string& out) {
   for (const std::string& comment : comments)
     out += comment.empty() ? "#\n" : "# " + comment + "\n";
@@ -49,7 +40,7 @@ std::vector<std::string> TableLines(const Golden& golden) {
     if (line.spread != Spread{})
       add(fmt::format("spread={:.1f}/{:.1f}ms", line.spread.begin_ms, line.spread.end_ms));
     if (line.tolerance_ms)
-      add(fmt::format("tolerance={}ms because {}", *line.tolerance_ms, Quoted(line.because)));
+      add(fmt::format("tolerance={}ms because {}", *line.tolerance_ms, InQuotes(line.because)));
     rows.push_back(std::move(cells));
   }
   std::vector<std::string> lines = AlignColumns(rows);
@@ -257,12 +248,12 @@ std::string WriteGolden(const Golden& golden) {
   std::string out = fmt::format("# scenario: {}\n# grammar: {}\n", golden.scenario, golden.grammar);
   for (const std::string& line : golden.derived) out += fmt::format("# derived: {}\n", line);
   for (const Acceptance& acceptance : golden.accepted)
-    out += fmt::format("# accepted: {} {}\n", acceptance.date, Quoted(acceptance.reason));
+    out += fmt::format("# accepted: {} {}\n", acceptance.date, InQuotes(acceptance.reason));
   for (const Acceptance& acceptance : golden.pictures)
-    out += fmt::format("# pictures: {} {}\n", acceptance.date, Quoted(acceptance.reason));
+    out += fmt::format("# pictures: {} {}\n", acceptance.date, InQuotes(acceptance.reason));
   if (golden.ensemble_plays > 0)
     out += fmt::format("# ensemble: {} plays\n", golden.ensemble_plays);
-  if (!golden.unsteady.empty()) out += fmt::format("# unsteady: {}\n", Quoted(golden.unsteady));
+  if (!golden.unsteady.empty()) out += fmt::format("# unsteady: {}\n", InQuotes(golden.unsteady));
   out += fmt::format("# ticks_per_second: {}\n", golden.ticks_per_second);
   AppendComments(golden.comments, out);
 

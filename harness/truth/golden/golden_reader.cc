@@ -44,11 +44,8 @@ class GoldenReader {
   GoldenReader(std::string_view file, std::string_view text) : file_(file), text_(text) {}
 
   Result<Golden> Read() {
-    std::string_view rest = text_;
-    while (!rest.empty()) {
-      const std::size_t newline = rest.find('\n');
-      line_ = rest.substr(0, newline);
-      rest.remove_prefix(newline == std::string_view::npos ? rest.size() : newline + 1);
+    for (const std::string_view line : LinesOf(text_)) {
+      line_ = line;
       ++line_number_;
       column_ = 0;
       ReadLine();

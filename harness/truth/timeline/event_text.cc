@@ -96,20 +96,20 @@ std::vector<std::string> AlignColumns(const std::vector<std::vector<std::string>
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t column = 0; column < row.size(); ++column) {
+    for (std::size_t column = 0; column < row.size(); ++column)
       widths[column] = std::max(widths[column], row[column].size());
-    }
   }
-  std::vector<std::string> lines;
+  std::string text;
   for (const auto& row : rows) {
-    std::string line;
     for (std::size_t column = 0; column < row.size(); ++column) {
-      line += fmt::format("{:<{}}  ", row[column], widths[column]);
+      const bool right = numbers == Numbers::kRight && column > 0;
+      text +=
+          fmt::format(fmt::runtime(right ? "{:>{}}  " : "{:<{}}  "), row[column], widths[column]);
     }
-    line.erase(line.find_last_not_of(' ') + 1);
-    lines.push_back(std::move(line));
+    text.erase(text.find_last_not_of(' ') + 1);
+    text += "\n";
   }
-  return lines;
+  return text;
 }
 
 std::vector<std::string> EventCells(const NamedEvent& event, Tick ticks_per_second,

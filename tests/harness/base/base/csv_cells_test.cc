@@ -26,6 +26,13 @@ TEST(CsvCells, AreCutAtSeparatorsOutsideOfQuotes) {
   EXPECT_EQ(Texts("say \"a\",\"\"\"b\"\"\",\"\""), (V{"say \"a\"", "\"\"b\"\"", ""}));
 }
 
+TEST(CsvCells, OfTwoQuotesInQuotesOneIsMeant) {
+  const auto cells = CsvCellsOf(R"(say ""a"","say ""b""",""""" c")", ',');
+  EXPECT_EQ(cells[0].Value(), R"(say ""a"")");
+  EXPECT_EQ(cells[1].Value(), R"(say "b")");
+  EXPECT_EQ(cells[2].Value(), R"("" c)");
+}
+
 TEST(CsvCells, KnowTheirPlace) {
   const auto cells = CsvCellsOf("ab, \"c\"", ',');
   EXPECT_EQ(cells[1].column, 6);
