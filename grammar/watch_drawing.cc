@@ -23,11 +23,6 @@ EntityTable CastOf(const DrawnEpisode& drawn) {
       .ticks_per_second = kDrawnTicksPerSecond, .entities = drawn.entity_table, .styles = {"wrap"}};
 }
 
-std::string DidYouMean(const std::string& name, const std::vector<std::string>& known) {
-  const std::string near = NearestName(name, known);
-  return near.empty() ? "" : "did you mean '" + near + "'?";
-}
-
 // "hand, cup" -> hand; cup
 std::vector<std::string> SplitRoles(const std::string& text) {
   std::vector<std::string> roles(1);

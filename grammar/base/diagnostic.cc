@@ -165,6 +165,12 @@ std::string NearestName(std::string_view name, const std::vector<std::string>& c
   return related == candidates.end() || stem.size() < 3 ? "" : *related;
 }
 
+std::string DidYouMean(std::string_view name, const std::vector<std::string>& candidates,
+                       std::string_view otherwise) {
+  const std::string near = NearestName(name, candidates);
+  return near.empty() ? std::string(otherwise) : "did you mean '" + near + "'?";
+}
+
 std::string Plural(long long count, std::string_view noun) {
   std::string text(noun);
   if (count == 1 || noun.empty()) return text;

@@ -58,6 +58,10 @@ void ShowLine(Diagnostic& diagnostic, std::string_view line, int column);
 /// worth suggesting (distance above a third of the longer name's length).
 std::string NearestName(std::string_view name, const std::vector<std::string>& candidates);
 
+/// "did you mean 'height'?", or `otherwise` when none is near enough.
+std::string DidYouMean(std::string_view name, const std::vector<std::string>& candidates,
+                       std::string_view otherwise = "");
+
 // Counts and articles in English, for whatever is said to people.
 // Tested by tests/grammar/base/wording_test.cc
 

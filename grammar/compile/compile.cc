@@ -105,7 +105,7 @@ class Compiler {
       if (!used) {
         Complain(source, use.place,
                  "there is no grammar '" + (use.variant.empty() ? use.name : name) + "' to use",
-                 use.is_path ? "looked for " + name : Suggest(name, known_));
+                 use.is_path ? "looked for " + name : DidYouMean(name, known_));
         symbols_.is_incomplete = true;
       } else {
         texts_.used.try_emplace(name, *used);
@@ -174,7 +174,7 @@ class Compiler {
       }
       return Complain(source, setting.place,
                       "no grammar that is used has a parameter '" + setting.name + "'",
-                      Suggest(setting.name, names));
+                      DidYouMean(setting.name, names));
     }
     ProgramParam& param = program_.params[found->second];
     if (!(setting.value.dimension == param.value.dimension)) {
@@ -202,9 +202,7 @@ class Compiler {
       if (found == symbols_.params.end()) {
         std::vector<std::string> names;
         for (const auto& [known, index] : symbols_.params) names.push_back(known);
-        const std::string near = NearestName(name, names);
-        complain("the grammar has no parameter '" + name + "'",
-                 near.empty() ? "" : "did you mean '" + near + "'?");
+        complain("the grammar has no parameter '" + name + "'", DidYouMean(name, names));
         continue;
       }
       const std::optional<Quantity> quantity = ParseQuantity(text, diagnostics_);
@@ -462,10 +460,9 @@ class Compiler {
       NoteClass(program_, role.class_name, source.text.file, role.place);
     } else {
       known.insert(known.end(), BuiltinClasses().begin(), BuiltinClasses().end());
-      const std::string near = NearestName(role.class_name, known);
       Complain(source, role.place,
                "'" + role.class_name + "' is not a class; classes start with a capital letter",
-               near.empty() ? "" : "did you mean '" + near + "'?");
+               DidYouMean(role.class_name, known));
     }
   }
 

@@ -23,12 +23,6 @@ std::string_view TypeText(Type type) {
 
 }  // namespace
 
-std::string Suggest(std::string_view name, const std::vector<std::string>& known,
-                    std::string_view otherwise) {
-  const std::string near = NearestName(name, known);
-  return near.empty() ? std::string(otherwise) : "did you mean " + Quoted(near) + "?";
-}
-
 std::string AllenNames() {
   std::string text;
   for (const std::string_view name : kAllenNames)
@@ -360,7 +354,7 @@ Lowering::Typed Lowering::LowerName(const Expr& expr) {
   const bool is_call = FindBuiltin(expr.text) != nullptr || symbols_.rules.contains(expr.text);
   const Diagnostic unknown = symbols_.Unknown("name", expr.text,
                                               is_call ? "name the entity: " + expr.text + "(object)"
-                                                      : Suggest(expr.text, KnownNames(false)));
+                                                      : DidYouMean(expr.text, KnownNames(false)));
   return Bad(expr.place, unknown.message, unknown.hint);
 }
 

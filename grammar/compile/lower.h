@@ -72,9 +72,6 @@ inline bool StartsWithCapital(std::string_view name) {
 bool IsOverInterval(std::string_view name);
 
 inline std::string Quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
-/// "did you mean 'height'?", or nothing.
-std::string Suggest(std::string_view name, const std::vector<std::string>& known,
-                    std::string_view otherwise = "");
 /// "before, meets, ..": all thirteen.
 std::string AllenNames();
 

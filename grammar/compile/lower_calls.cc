@@ -53,7 +53,7 @@ std::optional<int> Lowering::RoleArgument(const Expr& expr, std::string_view wan
     for (const RuleRole& known : rule().roles) names.push_back(known.name);
     const std::string found = is_name ? ", and there is no role " + Quoted(expr.text) : "";
     Complain(expr.place, Quoted(callee) + " takes a role here" + found,
-             is_name ? Suggest(expr.text, names, HabitHint("role")) : "");
+             is_name ? DidYouMean(expr.text, names, HabitHint("role")) : "");
     return std::nullopt;
   }
   role_used_[role] = true;
@@ -83,7 +83,7 @@ Lowering::Typed Lowering::LowerCall(const Expr& expr) {
   if (const Operator* builtin = FindBuiltin(expr.text, expr.args.size()))
     return LowerBuiltin(*builtin, expr);
   const Diagnostic unknown = symbols_.Unknown("event, condition or signal", expr.text,
-                                              Suggest(expr.text, KnownNames(true)));
+                                              DidYouMean(expr.text, KnownNames(true)));
   return Bad(expr.place, unknown.message, unknown.hint);
 }
 

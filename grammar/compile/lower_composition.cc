@@ -46,11 +46,8 @@ class CompositionLowering {
     Composition().first = d_.first_of_equals;
     const auto find = [&](const std::string& label, Place place) {
       const auto found = std::ranges::find(labels, label);
-      if (found == labels.end()) {
-        const std::string near = NearestName(label, labels);
-        lowering_.Complain(place, "no part is labelled '" + label + "'",
-                           near.empty() ? "" : "did you mean '" + near + "'?");
-      }
+      if (found == labels.end())
+        lowering_.Complain(place, "no part is labelled '" + label + "'", DidYouMean(label, labels));
       return static_cast<int>(found - labels.begin());
     };
     for (const ast::Relation& relation : d_.relations) {

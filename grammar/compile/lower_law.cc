@@ -80,7 +80,7 @@ class LawLowering {
     const auto found = symbols_.rules.find(expr.text);
     if (found == symbols_.rules.end()) {
       const Diagnostic unknown =
-          symbols_.Unknown("event", expr.text, Suggest(expr.text, EventNames()));
+          symbols_.Unknown("event", expr.text, DidYouMean(expr.text, EventNames()));
       Complain(expr.place, unknown.message, unknown.hint);
       return std::nullopt;
     }
@@ -114,7 +114,7 @@ class LawLowering {
       Complain(arg.place,
                Quoted(expr.text) + " takes a role here" +
                    (is_name ? ", and the law has no role " + Quoted(arg.text) : ""),
-               is_name ? Suggest(arg.text, names) : "");
+               is_name ? DidYouMean(arg.text, names) : "");
       return false;
     }
     const int index = static_cast<int>(role - law_.roles.begin());

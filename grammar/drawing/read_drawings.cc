@@ -79,12 +79,6 @@ bool IsClassName(const std::string& text) {
 
 std::string Quoted(const std::string& text) { return "'" + text + "'"; }
 
-std::string DidYouMean(const std::string& word, const std::vector<std::string>& known,
-                       const std::string& otherwise) {
-  const std::string near = NearestName(word, known);
-  return near.empty() ? otherwise : "did you mean " + Quoted(near) + "?";
-}
-
 class Reader {
  public:
   Reader(const GrammarText& file, Diagnostics& diagnostics)

@@ -350,11 +350,10 @@ ValueFormat<std::string> Choice(std::vector<std::string> words) {
              auto text = StringOf(node, errors, wanted);
              if (!text) return false;
              if (std::find(words.begin(), words.end(), *text) == words.end()) {
-               const std::string near = grammar::NearestName(*text, words);
                errors.Add(
                    node.where,
                    fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node)),
-                   near.empty() ? "" : fmt::format("did you mean '{}'?", near));
+                   grammar::DidYouMean(*text, words));
                return false;
              }
              StringAt(value) = std::move(*text);

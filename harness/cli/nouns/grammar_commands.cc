@@ -423,12 +423,10 @@ std::string UnknownTrack(const std::vector<std::string>& only, const grammar::Pr
   const std::vector<std::string> known = show::TrackNames(program);
   for (const std::string& name : only) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const std::string near = grammar::NearestName(name, known);
     return fmt::format(
         "--only: found '{}', wanted an event, condition or signal of grammar '{}'; {}", name,
         GrammarName(program),
-        near.empty() ? fmt::format("known: {}", fmt::join(known, ", "))
-                     : fmt::format("did you mean '{}'?", near));
+        grammar::DidYouMean(name, known, fmt::format("known: {}", fmt::join(known, ", "))));
   }
   return "";
 }

@@ -235,10 +235,9 @@ std::string UnknownRole(const EventQuestion& question, const std::set<std::strin
     for (const episode::RoleCondition& condition : *conditions) {
       if (known.empty() || condition.role == "any" || known.contains(condition.role)) continue;
       const std::vector<std::string> names(known.begin(), known.end());
-      const std::string near = grammar::NearestName(condition.role, names);
       return fmt::format("{}: no event has a role '{}'; {}", option, condition.role,
-                         near.empty() ? fmt::format("there are: {}", fmt::join(names, ", "))
-                                      : fmt::format("did you mean '{}'?", near));
+                         grammar::DidYouMean(condition.role, names,
+                                             fmt::format("there are: {}", fmt::join(names, ", "))));
     }
   }
   return "";

@@ -184,10 +184,9 @@ std::optional<EventQuestion::Relation> ParseRelation(std::string_view text, std:
   if (name == "during") name = "inside";  // Allen's own word
   const std::vector<std::string> known(grammar::kAllenNames.begin(), grammar::kAllenNames.end());
   if (std::ranges::find(known, name) == known.end()) {
-    const std::string near = grammar::NearestName(name, known);
-    problem = fmt::format("found '{}', wanted one of Allen's relations; {}", name,
-                          near.empty() ? fmt::format("they are {}", fmt::join(known, ", "))
-                                       : fmt::format("did you mean '{}'?", near));
+    problem = fmt::format(
+        "found '{}', wanted one of Allen's relations; {}", name,
+        grammar::DidYouMean(name, known, fmt::format("they are {}", fmt::join(known, ", "))));
     return std::nullopt;
   }
   if (blank == std::string_view::npos || blank + 1 == text.size()) {

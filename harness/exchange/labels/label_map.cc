@@ -118,10 +118,9 @@ const Meaning* Find(const std::map<std::string, Meaning>& known, const std::stri
   if (found != known.end()) return &found->second;
   std::vector<std::string> names;
   for (const auto& [each, _] : known) names.push_back(each);
-  const std::string near = grammar::NearestName(name, names);
   meant.problem = fmt::format("the map has no {} '{}'", kind, name);
-  meant.hint = near.empty() ? fmt::format("{}s: {{{}: ignore}}", kind, AsYaml(name))
-                            : "did you mean '" + near + "'?";
+  meant.hint =
+      grammar::DidYouMean(name, names, fmt::format("{}s: {{{}: ignore}}", kind, InQuotes(name)));
   return nullptr;
 }
 

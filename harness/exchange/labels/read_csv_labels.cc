@@ -179,11 +179,9 @@ class ColumnFinder {
       if (const auto seat = SeatOf(role.value)) columns_.roles.emplace_back(role.name, *seat);
     for (const std::string& key : how_.keys)
       if (const auto seat = SeatOf(key)) columns_.keys.push_back(*seat);
-    if (!missing_.empty()) {
-      const std::string near = grammar::NearestName(missing_, words_);
+    if (!missing_.empty())
       return Problem(fmt::format("{}; the map wants a column '{}'", found_, missing_),
-                     near.empty() ? "" : "did you mean '" + near + "'?");
-    }
+                     grammar::DidYouMean(missing_, words_));
     return Checked();
   }
 

@@ -59,9 +59,8 @@ Signals SignalsOf(const Episode& episode, const Grammar* grammar,
     const std::vector<std::string> known = show::TrackNames(*opened.program());
     for (const std::string& name : only) {
       if (std::ranges::count(known, name) > 0) continue;
-      const std::string near = grammar::NearestName(name, known);
       Refuse("", "no event, condition or signal of the grammar is called '" + name + "'",
-             near.empty() ? "" : "did you mean '" + near + "'?");
+             grammar::DidYouMean(name, known));
     }
     const show::Watched watched = Watch(opened);
     show::Tracks tracks =

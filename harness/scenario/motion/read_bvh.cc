@@ -245,10 +245,9 @@ class BvhReader {
   }
 
   bool UnknownChannel(const Word& word) {
-    const std::string nearest = grammar::NearestName(word.text, ChannelNames());
     Complain(PlaceOf(word), fmt::format("no channel is called '{}'", word.text),
-             nearest.empty() ? "Xposition, Yposition, Zposition, Xrotation, Yrotation, Zrotation"
-                             : fmt::format("did you mean '{}'?", nearest));
+             grammar::DidYouMean(word.text, ChannelNames(),
+                                 fmt::format("{}", fmt::join(ChannelNames(), ", "))));
     return false;
   }
 

@@ -86,9 +86,8 @@ class AskReader {
   }
 
   static std::string Hint(const std::string& name, const std::vector<std::string>& known) {
-    const std::string near = grammar::NearestName(name, known);
-    if (!near.empty()) return fmt::format("did you mean '{}'?", near);
-    return known.empty() ? "" : fmt::format("there are: {}", fmt::join(known, ", "));
+    return grammar::DidYouMean(
+        name, known, known.empty() ? "" : fmt::format("there are: {}", fmt::join(known, ", ")));
   }
 
   std::string Example() const {

@@ -421,10 +421,9 @@ tl::expected<Claim, ClaimProblem> ParseClaim(std::string_view text) {
 
 std::string HintForName(std::string_view name, const std::vector<std::string>& known) {
   constexpr std::size_t kMaxListed = 20;
-  const std::string near = grammar::NearestName(name, known);
-  if (!near.empty()) return fmt::format("did you mean '{}'?", near);
-  if (known.empty() || known.size() > kMaxListed) return "";
-  return fmt::format("known: {}", fmt::join(known, ", "));
+  const bool lists = !known.empty() && known.size() <= kMaxListed;
+  return grammar::DidYouMean(name, known,
+                             lists ? fmt::format("known: {}", fmt::join(known, ", ")) : "");
 }
 
 }  // namespace prehend::truth
