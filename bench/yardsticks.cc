@@ -284,7 +284,7 @@ int Run(const std::vector<std::string>& arguments) {
   if (has("--json"))
     std::puts(nlohmann::ordered_json{{"figures", list}}.dump(2).c_str());
   else
-    for (const std::string& line : truth::AlignColumns(rows)) std::puts(line.c_str());
+    std::fputs(truth::AlignColumns(rows).c_str(), stdout);
   return std::ranges::all_of(figures, &Figure::agrees) ? 0 : 1;
 }
 

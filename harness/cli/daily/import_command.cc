@@ -198,7 +198,7 @@ ExitCode ImportBatch(const Batch& batch, const ParsedOptions& options,
   if (exit_code == ExitCode::kAgrees && !left_out.empty()) exit_code = ExitCode::kDiffers;
   if (output == "-") return exit_code;
   if (!first.empty()) context.out << first << "\n";
-  for (const std::string& line : truth::AlignColumns(table)) context.out << line << "\n";
+  context.out << truth::AlignColumns(table);
   context.out << fmt::format("{} of {} {}{}\n", table.size() - 1, batch.names.size(), batch.noun,
                              left_out);
   return exit_code;

@@ -137,7 +137,7 @@ void PrintTable(const std::vector<Json>& answers, std::ostream& out) {
       std::vector<std::string>& row = rows.emplace_back();
       for (const auto& [name, value] : answer["bindings"].items()) row.push_back(CellOf(value));
     }
-    for (const std::string& line : truth::AlignColumns(rows)) out << line << "\n";
+    out << truth::AlignColumns(rows);
   }
   out << answers.size() << (answers.size() == 1 ? " answer\n" : " answers\n");
 }

@@ -61,7 +61,7 @@ ExitCode RunEpisodes(const ParsedOptions& options, const CommandContext& context
   if (options.Has("--json")) {
     context.out << json.dump(2) << "\n";
   } else {
-    for (const std::string& line : truth::AlignColumns(table)) context.out << line << "\n";
+    context.out << truth::AlignColumns(table);
   }
   return json.empty() ? ExitCode::kNothing : ExitCode::kAgrees;
 }

@@ -190,7 +190,7 @@ ExitCode RunBench(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--json")) {
     context.out << nlohmann::ordered_json{{"figures", list}}.dump(2) << "\n";
   } else {
-    for (const std::string& line : truth::AlignColumns(rows)) context.out << line << "\n";
+    context.out << truth::AlignColumns(rows);
     context.out << "On one core, in processor time, the best of several runs.\n";
   }
   return ExitCode::kAgrees;

@@ -91,7 +91,7 @@ void PrintQueryTable(const std::vector<EventAnswer>& answers,
     for (const grammar::NamedEvent& part : answers[i].parts) add(i, part, true);
   }
   if (csv) return PrintCsv(rows, out);
-  for (const std::string& line : truth::AlignColumns(rows)) out << line << "\n";
+  out << truth::AlignColumns(rows);
   out << answers.size() << (answers.size() == 1 ? " answer\n" : " answers\n");
 }
 
@@ -164,7 +164,7 @@ void PrintCounts(const std::vector<EventAnswer>& answers, const std::vector<std:
   } else {
     for (std::vector<std::string>& row : rows)
       std::ranges::replace(row, std::string(), std::string("-"));
-    for (const std::string& line : truth::AlignColumns(rows)) out << line << "\n";
+    out << truth::AlignColumns(rows);
     out << answers.size() << (answers.size() == 1 ? " answer\n" : " answers\n");
   }
 }

@@ -96,7 +96,7 @@ void PrintPoses(const scenario::Scenario& scenario, const physics::Snapshot& now
                     fmt::format("# joint of {}: {:.1f} % of its range", scene.body(joint.body).name,
                                 100 * (now.joints[i].position - joint.lower) / range)});
   }
-  for (const std::string& line : truth::AlignColumns(rows)) out << line << "\n";
+  out << truth::AlignColumns(rows);
 }
 
 Json PosesJson(const scenario::Scenario& scenario, const physics::Snapshot& now, double time_s) {

@@ -52,8 +52,7 @@ std::string RunTable(const RunResult& run) {
       rows.back().push_back(value.name + "=" + truth::ValueText(value));
     }
   }
-  std::string table;
-  for (const std::string& line : truth::AlignColumns(rows)) table += line + "\n";
+  std::string table = truth::AlignColumns(rows);
   table += StatusText(run) + "\n";
   if (!run.outcome.empty()) table += "outcome: " + run.outcome + "\n";
   return table;

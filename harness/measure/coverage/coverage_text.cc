@@ -205,7 +205,7 @@ std::string CoverageText(const Coverage& coverage) {
   }
   std::string text = fmt::format("{}, {}\n", coverage.grammar,
                                  grammar::CountOf(coverage.episodes.size(), "episode"));
-  for (const std::string& line : truth::AlignColumns(rows)) text += line + "\n";
+  text += truth::AlignColumns(rows);
   rows = {{"", "clause", "of", "false", "true", "began", "ended"}};
   for (const Clause& clause : coverage.clauses) {
     std::string says = clause.part + " " + clause.text;
@@ -216,7 +216,7 @@ std::string CoverageText(const Coverage& coverage) {
                     std::to_string(clause.ended)});
   }
   text += "\n";
-  for (const std::string& line : truth::AlignColumns(rows)) text += line + "\n";
+  text += truth::AlignColumns(rows);
   text += "\n" + Count("rules with an interval", coverage.Rules()) +
           Count("clauses that decided", coverage.Decided()) +
           Count("clauses that decided both ways", coverage.Clauses()) +

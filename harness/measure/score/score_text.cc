@@ -97,24 +97,6 @@ Row RowOf(const MeanOfKinds& mean, std::size_t width) {
   return row;
 }
 
-/// Columns two spaces apart; the first is aligned left, the others right.
-std::string Aligned(const std::vector<Row>& rows) {
-  std::vector<std::size_t> widths(rows.front().size(), 0);
-  for (const Row& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-  }
-  std::string text;
-  for (const Row& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      text += i == 0 ? fmt::format("{:<{}}", row[i], widths[i])
-                     : fmt::format("  {:>{}}", row[i], widths[i]);
-    }
-    text.erase(text.find_last_not_of(' ') + 1);
-    text += "\n";
-  }
-  return text;
-}
-
 int TruthsOf(const Score& score, const std::string& event) {
   const auto row = std::ranges::find(score.events, event, &EventScore::event);
   return row == score.events.end() ? 0 : row->truths;
@@ -293,7 +275,8 @@ std::string ScoreTable(const Score& score, double collar_s) {
   if (score.events.size() > 1) rows.push_back(RowOf(score.mean, rows.front().size()));
   return fmt::format("{}, {}{}\n{}{}{}{}{}", score.grammar,
                      score.set.empty() ? "" : "set " + score.set + ", ",
-                     grammar::CountOf(score.episodes, "episode"), Aligned(rows), MomentsText(score),
+                     grammar::CountOf(score.episodes, "episode"),
+                     truth::AlignColumns(rows, truth::Numbers::kRight), MomentsText(score),
                      NotCoveredText(score), IgnoredText(score), ProgramText(score));
 }
 

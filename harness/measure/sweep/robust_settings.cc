@@ -369,7 +369,7 @@ std::string MarginsText(const Margins& margins, double within) {
   }
   std::string text = fmt::format("{}, {}\n", margins.sweep.grammar,
                                  grammar::CountOf(margins.sweep.episodes, "recording"));
-  for (const std::string& line : truth::AlignColumns(rows)) text += line + "\n";
+  text += truth::AlignColumns(rows);
   text += fmt::format(
       "each parameter from an eighth to eight times its value, the others as they are;\n"
       "a score stays if it is within {:g} percent of the best of its row\n{}\n",

@@ -324,9 +324,7 @@ std::string Table(const std::vector<WhyEvent>& events, Tick ticks_per_second) {
                     truth::SecondsText(why.interval.end, ticks_per_second), InOneLine(why.began),
                     InOneLine(why.ended), Late(why, ticks_per_second)});
   }
-  std::string text;
-  for (const std::string& line : truth::AlignColumns(rows)) text += line + "\n";
-  return text;
+  return truth::AlignColumns(rows);
 }
 
 using grammar::Limit;

@@ -365,9 +365,7 @@ std::string EventLines(const truth::Golden& golden) {
     for (const grammar::NamedValue& value : line.event.values)
       rows.back().push_back(value.name + "=" + truth::ValueText(value));
   }
-  std::string text;
-  for (const std::string& line : truth::AlignColumns(rows)) text += line + "\n";
-  return text;
+  return truth::AlignColumns(rows);
 }
 
 std::string Fingerprint(const truth::Golden& pending) {

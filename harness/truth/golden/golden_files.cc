@@ -43,7 +43,8 @@ std::vector<std::string> TableLines(const Golden& golden) {
       add(fmt::format("tolerance={}ms because {}", *line.tolerance_ms, InQuotes(line.because)));
     rows.push_back(std::move(cells));
   }
-  std::vector<std::string> lines = AlignColumns(rows);
+  const std::string table = AlignColumns(rows);
+  std::vector<std::string> lines = SplitAt(table.substr(0, table.size() - 1), '\n');
   for (std::size_t i = 0; i < golden.events.size(); ++i) {
     if (!golden.events[i].as_written.empty()) lines[i + 1] = golden.events[i].as_written;
   }

@@ -92,7 +92,7 @@ std::string NameByHand(const NamedEvent& event, const HandRoles& roles) {
   return hand.empty() ? event.event : event.event + " of " + hand;
 }
 
-std::vector<std::string> AlignColumns(const std::vector<std::vector<std::string>>& rows) {
+std::string AlignColumns(const std::vector<std::vector<std::string>>& rows, Numbers numbers) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));
