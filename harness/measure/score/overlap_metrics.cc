@@ -118,12 +118,6 @@ Segments SegmentsOf(const grammar::Timeline& timeline) {
 
 }  // namespace
 
-Hits& Hits::operator+=(const Hits& other) {
-  correct += other.correct;
-  extra += other.extra;
-  missed += other.missed;
-  return *this;
-}
 double Hits::Precision() const { return Ratio(correct, correct + extra, missed == 0 ? 1 : 0); }
 double Hits::Recall() const { return Ratio(correct, correct + missed, extra == 0 ? 1 : 0); }
 double Hits::F1() const { return Ratio(2 * correct, 2 * correct + extra + missed, 1); }
@@ -189,20 +183,8 @@ double MeanAveragePrecision(const std::vector<LabelledEpisode>& episodes, double
   return Ratio(sum, labels, by_label.empty() ? 1 : 0);
 }
 
-FrameCounts& FrameCounts::operator+=(const FrameCounts& other) {
-  equal += other.equal;
-  all += other.all;
-  correct += other.correct;
-  confused += other.confused;
-  missed += other.missed;
-  false_alarm += other.false_alarm;
-  return *this;
-}
 double FrameCounts::Accuracy() const {
   return Ratio(static_cast<double>(equal), static_cast<double>(all), 1);
-}
-double FrameCounts::AccuracyInTruth() const {
-  return Ratio(static_cast<double>(correct), static_cast<double>(InTruth()), 1);
 }
 double FrameCounts::ErrorRate() const {
   return Ratio(static_cast<double>(confused + missed + false_alarm), static_cast<double>(InTruth()),
@@ -253,13 +235,6 @@ FrameCounts CountFrames(const Episode& episode, Tick collar) {
   return counts;
 }
 
-EventErrors& EventErrors::operator+=(const EventErrors& other) {
-  truths += other.truths;
-  predictions += other.predictions;
-  correct += other.correct;
-  substituted += other.substituted;
-  return *this;
-}
 double EventErrors::ErrorRate() const {
   return Ratio(substituted + Deleted() + Inserted(), truths, predictions == 0 ? 0 : 1);
 }
@@ -313,16 +288,9 @@ void WardFrames::Add(const WardFrames& more, double share) {
 }
 
 void Ward::Add(const Ward& other, double ticks_per_second) {
-  correct += other.correct;
-  deleted += other.deleted;
-  fragmented += other.fragmented;
-  merged += other.merged;
-  fragmented_and_merged += other.fragmented_and_merged;
-  inserted += other.inserted;
-  found_correct += other.found_correct;
-  fragmenting += other.fragmenting;
-  merging += other.merging;
-  fragmenting_and_merging += other.fragmenting_and_merging;
+  AddCounts<&Ward::correct, &Ward::deleted, &Ward::fragmented, &Ward::merged,
+            &Ward::fragmented_and_merged, &Ward::inserted, &Ward::found_correct, &Ward::fragmenting,
+            &Ward::merging, &Ward::fragmenting_and_merging>(*this, other);
   missed.Add(other.missed, 1 / ticks_per_second);
   false_alarm.Add(other.false_alarm, 1 / ticks_per_second);
 }

@@ -45,12 +45,21 @@ struct LabelledEpisode {
 LabelledEpisode Labelled(const grammar::Timeline& truth, const grammar::Timeline& found,
                          grammar::Tick ticks);
 
+/// Adds these members of `more` to those of `sum`.
+template <auto... counts, class T>
+T& AddCounts(T& sum, const T& more) {
+  ((sum.*counts += more.*counts), ...);
+  return sum;
+}
+
 struct Hits {
   int correct = 0;  ///< true positives
   int extra = 0;    ///< false positives
   int missed = 0;   ///< false negatives
 
-  Hits& operator+=(const Hits& other);
+  Hits& operator+=(const Hits& other) {
+    return AddCounts<&Hits::correct, &Hits::extra, &Hits::missed>(*this, other);
+  }
   /// 0..1; 1 if there is nothing.
   double Precision() const;
   double Recall() const;
@@ -81,11 +90,14 @@ struct FrameCounts {
   grammar::Tick missed = 0;       ///< a label in the truth only
   grammar::Tick false_alarm = 0;  ///< a label in the prediction only
 
-  FrameCounts& operator+=(const FrameCounts& other);
+  FrameCounts& operator+=(const FrameCounts& other) {
+    using F = FrameCounts;
+    return AddCounts<&F::equal, &F::all, &F::correct, &F::confused, &F::missed, &F::false_alarm>(
+        *this, other);
+  }
   grammar::Tick InTruth() const { return correct + confused + missed; }
   /// Mean over frames (MoF), 0..1, with background; and within the truth's segments.
   double Accuracy() const;
-  double AccuracyInTruth() const;
   /// Identification error rate; the same as the segment-based error rate on the tick grid.
   double ErrorRate() const;
   /// The same without labels: event or background (pyannote's detection error rate).
@@ -104,7 +116,10 @@ FrameCounts CountFrames(const Episode& episode, grammar::Tick collar = 0);
 struct EventErrors {
   int truths = 0, predictions = 0, correct = 0, substituted = 0;
 
-  EventErrors& operator+=(const EventErrors& other);
+  EventErrors& operator+=(const EventErrors& other) {
+    using E = EventErrors;
+    return AddCounts<&E::truths, &E::predictions, &E::correct, &E::substituted>(*this, other);
+  }
   Hits AsHits() const { return {correct, predictions - correct, truths - correct}; }
   int Deleted() const { return truths - correct - substituted; }
   int Inserted() const { return predictions - correct - substituted; }

@@ -58,14 +58,6 @@ RowPair OnTheCircle(btScalar limit, const RowPair& response, const RowPair& want
   return {x.first * scale, x.second * scale};
 }
 
-RowPair FrictionWithin(btScalar limit, const PrincipalResponse& response, const RowPair& wanted) {
-  if (limit <= 0) return {};
-  const btScalar squared_length = SquaredLength(wanted);
-  if (squared_length <= limit * limit) return wanted;
-  return response.ToRows(OnTheCircle(limit, {response.first(), response.second()},
-                                     response.ToPrincipal(wanted), squared_length));
-}
-
 RowPair FrictionChange(const RowPair& impulse, btScalar limit, const PrincipalResponse& response,
                        const RowPair& speed_errors) {
   if (!response.moves()) return {};

@@ -14,18 +14,13 @@ struct RowPair {
   btScalar first = 0, second = 0;
 };
 
-/// Change of speed along each row by a unit impulse along each row: symmetric, positive definite.
-/// Unit: 1/kg (of rows that act on rotations: 1/(kg m^2)).
-struct PairResponse {
-  btScalar first, coupling, second;
-};
-
-/// The same along the two directions that do not act on each other. Computed once per tick.
+/// Change of speed by a unit impulse, along the two directions that do not act on each other.
+/// Computed once per tick.
 class PrincipalResponse {
  public:
+  /// From that along each row by a unit impulse along each row: symmetric, positive definite. Unit:
+  /// 1/kg (of rows that act on rotations: 1/(kg m^2)).
   PrincipalResponse(btScalar first, btScalar coupling, btScalar second);
-  PrincipalResponse(const PairResponse& response)
-      : PrincipalResponse(response.first, response.coupling, response.second) {}
 
   /// Whether an impulse changes the speed along both directions by a finite amount.
   bool moves() const { return moves_; }
@@ -47,12 +42,9 @@ class PrincipalResponse {
   bool moves_;
 };
 
-/// The impulse x with |x| <= limit that minimises (x - wanted)' K (x - wanted) / 2, with K =
-/// `response`: `wanted` if it is within the limit, else the impulse on the circle that is opposite
-/// to the remaining sliding velocity. Relative error of |x| at most 1e-9. Zero if limit <= 0.
-RowPair FrictionWithin(btScalar limit, const PrincipalResponse& response, const RowPair& wanted);
-
-/// The same of a `wanted` beyond the limit, which is positive. All are along principal directions.
+/// The impulse x with |x| = limit that minimises (x - wanted)' K (x - wanted) / 2, with K =
+/// `response`, of a `wanted` beyond the limit, which is positive: it is opposite to the remaining
+/// sliding velocity. All are along principal directions. Relative error of |x| at most 1e-9.
 RowPair OnTheCircle(btScalar limit, const RowPair& response, const RowPair& wanted,
                     btScalar squared_length);
 

@@ -78,7 +78,8 @@ class ScoreMetrics : public testing::TestWithParam<std::string> {
 TEST_P(ScoreMetrics, MeanOverFrames) {
   const FrameCounts counts = CountFrames(episode_);
   EXPECT_NEAR(100 * counts.Accuracy(), printed_["mof"], kPrinted);
-  EXPECT_NEAR(100 * counts.AccuracyInTruth(), printed_["mof_nobg"], kPrinted);
+  EXPECT_NEAR(100.0 * static_cast<double>(counts.correct) / static_cast<double>(counts.InTruth()),
+              printed_["mof_nobg"], kPrinted);
 }
 
 TEST_P(ScoreMetrics, Edit) {
