@@ -32,7 +32,7 @@ Json RowJson(const std::string& file, const episode::EpisodeRow& row) {
           {"uuid", row.uuid},
           {"scenario", row.scenario},
           {"status", row.status},
-          {"seconds", static_cast<double>(row.ticks) / static_cast<double>(row.ticks_per_second)},
+          {"seconds", truth::SecondsOf(row.ticks, row.ticks_per_second)},
           {"grammar", row.grammar},
           {"outcome", row.outcome},
           {"state_hash", row.state_hash},

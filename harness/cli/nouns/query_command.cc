@@ -29,7 +29,7 @@ using episode::EventQuestion;
 using Json = nlohmann::ordered_json;
 
 double SecondsAt(const EventAnswer& answer, grammar::Tick tick) {
-  return static_cast<double>(tick) / static_cast<double>(answer.ticks_per_second);
+  return truth::SecondsOf(tick, answer.ticks_per_second);
 }
 
 std::string RolesText(const grammar::NamedEvent& event) {

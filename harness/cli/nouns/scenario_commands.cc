@@ -132,8 +132,7 @@ ExitCode RunPoses(const ParsedOptions& options, const CommandContext& context) {
   const auto found =
       std::ranges::lower_bound(run.recording, moment.tick, {}, &physics::Snapshot::tick);
   const physics::Snapshot& now = found == run.recording.end() ? run.recording.back() : *found;
-  const double time_s =
-      static_cast<double>(now.tick) / static_cast<double>(run.timeline.ticks_per_second);
+  const double time_s = truth::SecondsOf(now.tick, run.timeline.ticks_per_second);
   if (options.Has("--json"))
     context.out << PosesJson(scenario, now, time_s).dump(2) << "\n";
   else

@@ -80,7 +80,7 @@ void WriteEvents(const Database& database, std::int64_t episode, const grammar::
   for (std::size_t i = 0; i < table.entities.size(); ++i)
     numbers.try_emplace(table.entities[i].name, static_cast<std::int64_t>(i));
   const auto seconds = [&](grammar::Tick ticks) {
-    return static_cast<double>(ticks) / static_cast<double>(timeline.ticks_per_second);
+    return truth::SecondsOf(ticks, timeline.ticks_per_second);
   };
   Statement insert = database.Prepare(
       "INSERT INTO event(episode, event, begin_tick, end_tick, decided_tick, open_end, begin_s,"

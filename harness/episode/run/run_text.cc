@@ -20,10 +20,6 @@ bool Completed(const RunResult& run) {
   return run.status.kind == physics::RunStatus::Kind::kCompleted;
 }
 
-double SecondsOf(Tick tick, Tick ticks_per_second) {
-  return static_cast<double>(tick) / static_cast<double>(ticks_per_second);
-}
-
 }  // namespace
 
 std::string StatusText(const RunResult& run) {
@@ -104,7 +100,7 @@ Measurement Measure(const RunResult& run) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return {.seconds = run.seconds,
-          .simulated_s = SecondsOf(run.ticks, run.timeline.ticks_per_second),
+          .simulated_s = truth::SecondsOf(run.ticks, run.timeline.ticks_per_second),
           .peak_memory_kib = usage.ru_maxrss};
 }
 

@@ -53,7 +53,7 @@ class Motion {
 
   const grammar::EntityTable& table() const { return header.entity_table; }
   double Seconds(grammar::Tick tick) const {
-    return static_cast<double>(tick) / static_cast<double>(table().ticks_per_second);
+    return truth::SecondsOf(tick, table().ticks_per_second);
   }
   /// Nanoseconds since the begin of the episode.
   std::uint64_t Nanoseconds(grammar::Tick tick) const;

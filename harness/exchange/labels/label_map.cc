@@ -458,8 +458,7 @@ Result<grammar::Timeline> LabelReading::Truth(std::size_t take,
                                               const std::vector<grammar::EntityInfo>& entities,
                                               grammar::Tick ticks_per_second,
                                               grammar::Tick end) const {
-  Diagnostics problems =
-      Problems(take, entities, static_cast<double>(end) / static_cast<double>(ticks_per_second));
+  Diagnostics problems = Problems(take, entities, truth::SecondsOf(end, ticks_per_second));
   if (!problems.empty()) return tl::unexpected(std::move(problems));
   return Marked(take, ticks_per_second, end, false);
 }
@@ -468,8 +467,7 @@ Result<grammar::Timeline> LabelReading::Found(std::size_t take,
                                               const std::vector<grammar::EntityInfo>& entities,
                                               grammar::Tick ticks_per_second, grammar::Tick end,
                                               const ComparedRoles& compared) const {
-  Diagnostics problems =
-      Problems(take, entities, static_cast<double>(end) / static_cast<double>(ticks_per_second));
+  Diagnostics problems = Problems(take, entities, truth::SecondsOf(end, ticks_per_second));
   grammar::Timeline found{.ticks_per_second = ticks_per_second};
   for (const LabelledEvent& label : events_[take]) {
     if (problems.size() >= kMostComplaints) break;

@@ -29,9 +29,7 @@ struct Subtasks {
   std::vector<Subtask> all;          ///< one after another; none if a boundary is missing:
   std::string missing;               ///< which one, and why
 
-  double Seconds(grammar::Tick tick) const {
-    return static_cast<double>(tick) / static_cast<double>(ticks_per_second);
-  }
+  double Seconds(grammar::Tick tick) const { return truth::SecondsOf(tick, ticks_per_second); }
 };
 
 /// Names of the map that the grammar, or the map, does not have.

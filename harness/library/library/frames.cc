@@ -45,8 +45,7 @@ struct FrameBuilder::State {
   }
 
   [[noreturn]] void RefuseFrame(const std::string& message, const std::string& hint) const {
-    const double time_s =
-        static_cast<double>(frame.tick.value) / static_cast<double>(table().ticks_per_second);
+    const double time_s = truth::SecondsOf(frame.tick.value, table().ticks_per_second);
     Refuse(kFrames, fmt::format("at {:g} s (tick {}): {}", time_s, frame.tick.value, message),
            hint);
   }

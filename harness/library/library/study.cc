@@ -92,8 +92,7 @@ Explanation Explain(const Episode& episode, const Grammar* grammar, const std::s
     std::optional<show::Ask> ask;
     if (!event.empty())
       ask = Unwrap(show::ParseAsk("event", event, *opened.program(), opened.entities()));
-    const auto length_s = static_cast<double>(episode.impl().end) /
-                          static_cast<double>(opened.entities().ticks_per_second);
+    const auto length_s = truth::SecondsOf(episode.impl().end, opened.entities().ticks_per_second);
     if (ask && ask->time_s.value_or(0) > length_s)
       Refuse("event",
              fmt::format("found {:g} s, the episode ends after {:g} s", *ask->time_s, length_s));
@@ -159,8 +158,7 @@ Warned ScoreJson(const Grammar& grammar, const std::vector<Compared>& episodes,
     measure::EpisodeToScore& scored = all.emplace_back();
     scored.ticks = one.end;
     scored.truth = Unwrap(truths.Truth(take, table.entities, table.ticks_per_second, scored.ticks));
-    doubts += measure::RateWarning(
-        truths, take, static_cast<double>(one.end) / static_cast<double>(table.ticks_per_second));
+    doubts += measure::RateWarning(truths, take, truth::SecondsOf(one.end, table.ticks_per_second));
     const auto found = Unwrap(exchange::AsFound(
         FileOf(one.found, take), episode::TakesOf({names[take]}), "", *grammar.program()));
     measure::AddFound(
@@ -201,7 +199,7 @@ std::string TimelineSvg(const grammar::Timeline& timeline, grammar::Tick end,
   truth::HandRoles hands;
   if (grammar) hands = truth::HandRolesOf(EventSignatures(*grammar->program()));
   const auto seconds = [&](grammar::Tick tick) {
-    return static_cast<double>(tick) / static_cast<double>(timeline.ticks_per_second);
+    return truth::SecondsOf(tick, timeline.ticks_per_second);
   };
   show::Chart chart{.title = "", .from_s = 0, .to_s = seconds(end)};
   for (const grammar::NamedEvent& event : timeline.events) {

@@ -32,8 +32,7 @@ grammar::Timeline OfKind(const grammar::Timeline& timeline, const std::string& e
 double SecondsOf(const std::vector<EpisodeToScore>& episodes) {
   double seconds = 0;
   for (const EpisodeToScore& episode : episodes)
-    seconds +=
-        static_cast<double>(episode.ticks) / static_cast<double>(episode.truth.ticks_per_second);
+    seconds += truth::SecondsOf(episode.ticks, episode.truth.ticks_per_second);
   return seconds;
 }
 

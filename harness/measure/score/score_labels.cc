@@ -174,8 +174,7 @@ class LabelScorer {
       PREHEND_TRY(EpisodeToScore labelled,
                   Labelled(*episode, request_.takes[group.takes[i]], i, truths));
       true_events += labelled.truth.events.size();
-      const double take_s = static_cast<double>(labelled.ticks) /
-                            static_cast<double>(episode->entities().ticks_per_second);
+      const double take_s = truth::SecondsOf(labelled.ticks, episode->entities().ticks_per_second);
       if (is_first) scores_.counted.cut += truths.Cut(i, take_s);
       if (const std::string doubt = RateWarning(truths, i, take_s); said_.insert(doubt).second)
         warnings_ += doubt;

@@ -50,8 +50,7 @@ SpeedFigure Watch(episode::Episode& episode, int runs) {
             if (frames.size() == kFramesAtOnce) watch();
           });
           watch();
-          figure.simulated_s =
-              static_cast<double>(end.tick) / static_cast<double>(entities.ticks_per_second);
+          figure.simulated_s = truth::SecondsOf(end.tick, entities.ticks_per_second);
           return end.tick;
         };
     figure.events = static_cast<double>(

@@ -75,7 +75,7 @@ Json ToJson(const Reasons& reasons, Tick ticks_per_second) {
     Json json = {{"is", Name(reason.mark)}, {"clause", reason.what}, {"text", reason.how}};
     if (!reason.where.empty()) json["rule"] = reason.where;
     if (reason.tick) json["tick"] = *reason.tick;
-    if (reason.tick) json["time_s"] = Seconds(*reason.tick, ticks_per_second);
+    if (reason.tick) json["time_s"] = truth::SecondsOf(*reason.tick, ticks_per_second);
     if (reason.reading) {
       json["value"] = Number(reason.reading->value);
       json["limit"] = Number(reason.reading->limit);
@@ -257,8 +257,8 @@ Json ToJson(const WhyEvent& why, Tick ticks_per_second) {
                {"rule", why.where},
                {"begin_tick", why.interval.begin},
                {"end_tick", why.interval.end},
-               {"begin_s", Seconds(why.interval.begin, ticks_per_second)},
-               {"end_s", Seconds(why.interval.end, ticks_per_second)},
+               {"begin_s", truth::SecondsOf(why.interval.begin, ticks_per_second)},
+               {"end_s", truth::SecondsOf(why.interval.end, ticks_per_second)},
                {"decided_tick", why.decided},
                {"open_end", why.open_end},
                {"began", ToJson(why.began, ticks_per_second)},
@@ -271,14 +271,14 @@ Json ToJson(const WhyEvent& why, Tick ticks_per_second) {
 
 Json ToJson(const WhyMissing& why, Tick ticks_per_second) {
   Json json = {{"event", why.event}, {"rule", why.where}, {"happened", false}};
-  if (why.expected_at) json["expected_s"] = Seconds(*why.expected_at, ticks_per_second);
+  if (why.expected_at) json["expected_s"] = truth::SecondsOf(*why.expected_at, ticks_per_second);
   json["because"] = why.because;
   AddTo(json, why.decisive);
   json["reasons"] = ToJson(why.reasons, ticks_per_second);
   Json nearest = Json::array();
   for (const WhyEvent& other : why.nearest) {
-    nearest.push_back({{"begin_s", Seconds(other.interval.begin, ticks_per_second)},
-                       {"end_s", Seconds(other.interval.end, ticks_per_second)}});
+    nearest.push_back({{"begin_s", truth::SecondsOf(other.interval.begin, ticks_per_second)},
+                       {"end_s", truth::SecondsOf(other.interval.end, ticks_per_second)}});
   }
   json["happened_at"] = std::move(nearest);
   return json;

@@ -284,8 +284,7 @@ std::string At(Tick tick, Tick ticks_per_second) {
 }
 
 std::string Duration(Tick ticks, Tick ticks_per_second) {
-  return QuantityText(static_cast<double>(ticks) / static_cast<double>(ticks_per_second),
-                      grammar::kSeconds);
+  return QuantityText(truth::SecondsOf(ticks, ticks_per_second), grammar::kSeconds);
 }
 
 const std::string& RuleName(ReplayMonitor& past, InstanceId instance) {

@@ -146,8 +146,8 @@ const CandidateOutcome* MissingReasons::NearestRun(InstanceId instance, const Wi
 double MissingReasons::RunCloseness(const CandidateOutcome& outcome) {
   const Rule& rule = past_.RuleOf(outcome.instance);
   const FrameNumber last = std::min(outcome.span.end.frame, past_.frames() - 1);
-  const double lasted_s = static_cast<double>(outcome.span.end.tick - outcome.span.begin.tick) /
-                          static_cast<double>(past_.entity_table().ticks_per_second);
+  const double lasted_s = truth::SecondsOf(outcome.span.end.tick - outcome.span.begin.tick,
+                                           past_.entity_table().ticks_per_second);
   if (outcome.If<fate::TooShort>() != nullptr) return 1 + 0.5 * lasted_s / rule.lasting_s;
   if (const auto* few = outcome.If<fate::TooFew>())
     return 1 + 0.9 * few->found / rule.As<grammar::WhileRule>().at_least;

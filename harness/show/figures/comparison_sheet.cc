@@ -84,9 +84,7 @@ class Differ {
   }
 
  private:
-  double Seconds(Tick tick) const {
-    return static_cast<double>(tick) / static_cast<double>(comparison_.ticks_per_second);
-  }
+  double Seconds(Tick tick) const { return truth::SecondsOf(tick, comparison_.ticks_per_second); }
   static bool IsOut(const truth::Pairing& pairing, Tick offset) {
     return std::abs(offset) > pairing.tolerance;
   }

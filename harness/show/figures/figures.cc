@@ -328,7 +328,7 @@ std::optional<Chart> GazeChart(const scenario::Scenario& scenario, const episode
 Chart DrawingChart(const grammar::Program& program, const grammar::DrawnEpisode& drawn,
                    const grammar::Timeline& timeline) {
   const auto seconds = [&](grammar::Tick tick) {
-    return static_cast<double>(tick) / static_cast<double>(timeline.ticks_per_second);
+    return truth::SecondsOf(tick, timeline.ticks_per_second);
   };
   Chart chart{
       .title = drawn.title, .from_s = 0, .to_s = seconds(drawn.end()), .rows = {}, .panels = {}};

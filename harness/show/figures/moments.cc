@@ -231,12 +231,12 @@ std::string HandOf(const episode::RunResult& run, const grammar::NamedEvent& eve
 }
 
 double SecondsOf(const episode::RunResult& run, grammar::Tick tick) {
-  return static_cast<double>(tick) / static_cast<double>(run.timeline.ticks_per_second);
+  return truth::SecondsOf(tick, run.timeline.ticks_per_second);
 }
 
 Moment MomentOf(const EventAnswer& answer) {
   const auto seconds = [&](grammar::Tick tick) {
-    return static_cast<double>(tick) / static_cast<double>(answer.ticks_per_second);
+    return truth::SecondsOf(tick, answer.ticks_per_second);
   };
   Moment moment{.file = answer.file,
                 .episode = answer.episode,

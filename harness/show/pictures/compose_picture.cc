@@ -50,7 +50,7 @@ struct Selection {
 };
 
 double Seconds(grammar::Tick tick, const episode::RunResult& run) {
-  return static_cast<double>(tick) / static_cast<double>(run.timeline.ticks_per_second);
+  return truth::SecondsOf(tick, run.timeline.ticks_per_second);
 }
 
 render::Color EventColor(const episode::RunResult& run, const grammar::NamedEvent& event) {

@@ -24,8 +24,7 @@ namespace {
 constexpr render::PngKind kSmall = render::PngKind::kSmall;
 
 double SecondsOf(const render::Picture& picture, const episode::RunResult& run) {
-  return static_cast<double>(picture.snapshot.tick) /
-         static_cast<double>(run.timeline.ticks_per_second);
+  return truth::SecondsOf(picture.snapshot.tick, run.timeline.ticks_per_second);
 }
 
 /// What a list of pictures says of one, also if it has no title.
@@ -343,8 +342,7 @@ DrawnScene ScenePainter::Draw(const scenario::Scenario& scenario, const episode:
   const render::Image image = DrawImage(state_->painter, picture, format);
   if (image.rgb.empty()) state_->error = state_->painter.error();
   return {.png = render::EncodePng(image),
-          .time_s = static_cast<double>(picture.snapshot.tick) /
-                    static_cast<double>(run.timeline.ticks_per_second),
+          .time_s = truth::SecondsOf(picture.snapshot.tick, run.timeline.ticks_per_second),
           .missed = episode::FindEventTime(entry.at.value, run).missed};
 }
 

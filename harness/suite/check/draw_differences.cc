@@ -158,9 +158,7 @@ class DifferencePainter {
   }
 
  private:
-  double Seconds(Tick tick) const {
-    return static_cast<double>(tick) / static_cast<double>(comparison_.ticks_per_second);
-  }
+  double Seconds(Tick tick) const { return truth::SecondsOf(tick, comparison_.ticks_per_second); }
 
   const scenario::Scenario& scenario_;
   const episode::RunResult& run_;

@@ -158,8 +158,7 @@ void LeaveOutOthers(const physics::Scene& scene, grammar::Timeline& timeline) {
 
 /// Rounded as a golden is written.
 double Milliseconds(grammar::Tick ticks, grammar::Tick ticks_per_second) {
-  const double ms =
-      1000.0 * static_cast<double>(std::abs(ticks)) / static_cast<double>(ticks_per_second);
+  const double ms = 1000.0 * truth::SecondsOf(std::abs(ticks), ticks_per_second);
   return std::round(10 * ms) / 10;
 }
 

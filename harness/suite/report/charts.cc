@@ -112,7 +112,7 @@ class TimelineChart {
   }
 
   double Seconds(Tick tick) const {
-    return static_cast<double>(tick) / static_cast<double>(comparisons_[0].ticks_per_second);
+    return truth::SecondsOf(tick, comparisons_[0].ticks_per_second);
   }
 
  private:
@@ -206,9 +206,7 @@ std::string ScriptText(const nlohmann::json& data) {
 }
 
 nlohmann::json BoundariesJson(const Explained& explained, grammar::Tick ticks_per_second) {
-  const auto seconds = [&](grammar::Tick tick) {
-    return static_cast<double>(tick) / static_cast<double>(ticks_per_second);
-  };
+  const auto seconds = [&](grammar::Tick tick) { return truth::SecondsOf(tick, ticks_per_second); };
   nlohmann::json list = nlohmann::json::array();
   for (const ExplainedEvent& event : explained.events)
     list.push_back({{"event", event.event},

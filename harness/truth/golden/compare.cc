@@ -156,8 +156,7 @@ class Pairer {
  private:
   /// A tick of the golden in those of the actual timeline.
   Tick Converted(Tick tick) const {
-    return TickAt(static_cast<double>(tick) / static_cast<double>(golden_.ticks_per_second),
-                  ticks_per_second_);
+    return TickAt(SecondsOf(tick, golden_.ticks_per_second), ticks_per_second_);
   }
 
   void PairEqualLabels() {

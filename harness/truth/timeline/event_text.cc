@@ -37,8 +37,7 @@ using grammar::Tick;
 std::string SecondsText(Tick tick, Tick ticks_per_second) {
   // Half a unit of the last decimal must stay below half a tick: 10^decimals > ticks_per_second.
   const int decimals = std::max<int>(4, static_cast<int>(std::to_string(ticks_per_second).size()));
-  return fmt::format("{:.{}f}", static_cast<double>(tick) / static_cast<double>(ticks_per_second),
-                     decimals);
+  return fmt::format("{:.{}f}", SecondsOf(tick, ticks_per_second), decimals);
 }
 
 Tick TickAt(double seconds, Tick ticks_per_second) {
@@ -51,7 +50,7 @@ std::string IntervalText(grammar::Interval interval, Tick ticks_per_second) {
 }
 
 double MillisecondsOf(Tick ticks, Tick ticks_per_second) {
-  return 1000.0 * static_cast<double>(ticks) / static_cast<double>(ticks_per_second);
+  return 1000.0 * SecondsOf(ticks, ticks_per_second);
 }
 
 std::string ValueText(const grammar::NamedValue& value) {
@@ -127,9 +126,7 @@ std::vector<std::string> EventCells(const NamedEvent& event, Tick ticks_per_seco
 using Json = nlohmann::ordered_json;
 
 Json EventJson(const grammar::NamedEvent& event, grammar::Tick ticks_per_second) {
-  const auto seconds = [&](grammar::Tick tick) {
-    return static_cast<double>(tick) / static_cast<double>(ticks_per_second);
-  };
+  const auto seconds = [&](grammar::Tick tick) { return SecondsOf(tick, ticks_per_second); };
   Json roles = Json::object(), attributes = Json::object();
   for (const grammar::Role& role : event.roles)
     (IsAttribute(role) ? attributes : roles)[role.name] = role.value;

@@ -52,8 +52,15 @@ const std::string& HandOf(const grammar::NamedEvent& event, const HandRoles& rol
 /// "EVENT of HAND", or without a hand "EVENT".
 std::string NameByHand(const grammar::NamedEvent& event, const HandRoles& roles);
 
-/// Rows of cells as lines with aligned columns, two blanks apart, no trailing blanks.
-std::vector<std::string> AlignColumns(const std::vector<std::vector<std::string>>& rows);
+inline double SecondsOf(grammar::Tick tick, grammar::Tick ticks_per_second) {
+  return static_cast<double>(tick) / static_cast<double>(ticks_per_second);
+}
+
+/// Rows of cells as lines with aligned columns, two blanks apart, no trailing blanks. Where numbers
+/// are to the right, the first column is not.
+enum class Numbers { kLeft, kRight };
+std::string AlignColumns(const std::vector<std::vector<std::string>>& rows,
+                         Numbers numbers = Numbers::kLeft);
 
 /// Event, begin, end, roles, and "open_end" as cells of a table row.
 std::vector<std::string> EventCells(const grammar::NamedEvent& event,
