@@ -142,6 +142,15 @@ TEST_F(GoldenOfARecording, MayBeOfAnotherGrammarThanTheRecordingNames) {
                   "'pick_and_place_from_motion' recognises; --grammar names another "
                   "one"))
       << without.out;
+  ASSERT_EQ(Accept({"--reason", "seen"}).exit_code, 0);
+  ASSERT_EQ(Check().exit_code, 0);
+  WriteFile(golden_,
+            Replaced(ReadFile(golden_), "# grammar: pick_and_place_from_motion", "# grammar: own"));
+  const Said equal = Check();
+  EXPECT_EQ(equal.exit_code, 2);
+  EXPECT_TRUE(Has(equal.out, "the golden is of another grammar")) << equal.out;
+  ASSERT_EQ(Accept({"--reason", "its own grammar"}).exit_code, 0);
+  EXPECT_EQ(Check().exit_code, 0);
   const Said scenario =
       Prehend({"accept", "milk_carton_wrap", "--grammar", own, "--reason", "x"}, {"CI="});
   EXPECT_EQ(scenario.exit_code, 2);

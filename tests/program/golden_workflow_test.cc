@@ -34,6 +34,12 @@ TEST_F(GoldenWorkflow, WhatIsPendingIsReviewedThenAccepted) {
                      "--reason \"...\"\n"));
   Accept();
   EXPECT_EQ(Do("review").exit_code, 0);
+  const Said stale = Do("accept carton_rests --reviewed 0123456789abcdef --reason seen");
+  EXPECT_EQ(stale.exit_code, 0);
+  EXPECT_NE(stale.err.find("--reviewed 0123456789abcdef is not what the scenario yields now, which "
+                           "agrees with its golden\n"),
+            std::string::npos)
+      << stale.err;
 
   WriteFile(Golden(), ReadFile(Golden()) + "sliding 0.1 0.2 hand=right_hand object=carton\n");
   EXPECT_EQ(Do("check --no-pictures").exit_code, 1);
@@ -247,12 +253,20 @@ TEST_F(GoldenWorkflow, WhatAGoldenNamesMustExist) {
       EXPECT_EQ(said.exit_code, 2) << to;
       EXPECT_NE(said.err.find(complaint), std::string::npos) << said.err;
     }
+    const Said checked = Do("check --no-pictures");  // also says how the events differ, if they do
+    EXPECT_EQ(checked.exit_code, to.starts_with("#") ? 2 : 1) << to << checked.out;
+    EXPECT_NE((checked.out + checked.err).find(complaint), std::string::npos)
+        << checked.out << checked.err;
   };
   const std::string file = Golden().string();
   says("contact  ", "contakt  ", file + ":8:1: error: the grammar has no event 'contakt'\n");
   says("support=table", "suport=table",
        file + ":9:47: error: 'supported_by' has no role 'suport'\n");
   says("a=carton", "a=karton", file + ":8:32: error: the scenario has no 'karton'\n");
+  says("object=carton  support=table", "object=table  support=carton",
+       "error: 'table' is never 'object' of 'supported_by', which takes a Movable\n");
+  says("a=carton       b=table", "a=table b=carton",
+       file + ":8:32: error: the two of 'contact' stand in the order of the alphabet\n");
   says("b=table", "style=wrap", "error: 'contact' has no style\n");
   says("b=table", "", file + ":8:1: error: 'contact' has a role 'b', which is missing here\n");
   says("# grammar: pick_and_place", "# grammar: contact",

@@ -230,8 +230,12 @@ void Acceptance::AcceptEvents() {
   const truth::Golden pending =
       PendingGolden(old_, run_.timeline, id_, loaded_.scenario.grammar, truth);
   const std::string moved = proposal.exact && old_ ? MovedWithinTolerance() : "";
-  if (old_ && *old_ == pending && !has_new_derivation && !request_.unsteady && moved.empty())
+  if (old_ && *old_ == pending && !has_new_derivation && !request_.unsteady && moved.empty()) {
+    if (request_.reviewed && *request_.reviewed != Fingerprint(pending))
+      outcome_.notes += "--reviewed " + *request_.reviewed +
+                        " is not what the scenario yields now, which agrees with its golden\n";
     return NothingToAccept();
+  }
   if (IsNotWhatWasShown(pending, truth)) return;
   truth::Golden golden = ProposeGolden(old_, run_.timeline, proposal);
   if (request_.unsteady) golden.unsteady = *request_.unsteady;

@@ -109,7 +109,14 @@ Findings GoldenAndTruth(CheckedEpisode& checked) {
   verdict.has_golden = checked.golden->has_golden;
   verdict.comparison = checked.golden->comparison;
   verdict.drawings = checked.run.result.drawings;
-  return JudgeGolden(*checked.golden, checked.run, verdict.cause);
+  Findings findings = JudgeGolden(*checked.golden, checked.run, verdict.cause);
+  if (!golden || !request.IsAsItsFileSays()) return findings;
+  const std::string file = truth::GoldenFiles(request.root).GoldenPath(request.id).string();
+  grammar::Diagnostics unfit = ValidateGolden(file, request.id, checked.run.loaded);
+  if (!unfit.empty())
+    findings.push_back(
+        {ExitCode::kBadInput, "the golden does not fit the scenario", "", std::move(unfit)});
+  return findings;
 }
 
 /// A planar scenario has the same events in both engines.
@@ -151,6 +158,9 @@ Findings GoldenBesideRecording(CheckedEpisode& checked) {
   } else if (!judged->comparison.Agrees()) {
     findings.push_back(DifferenceFinding(judged->comparison, verdict.explain));
     findings.back().details += OtherGrammarText(*judged);
+  } else if (request.changes.grammar.empty() && !OtherGrammarText(*judged).empty()) {
+    findings.push_back(
+        {ExitCode::kBadInput, "the golden is of another grammar", OtherGrammarText(*judged)});
   }
   if (!findings.empty()) findings.back().details += judged->segmented.missing.warnings;
   std::ranges::move(JudgeLaws(judged->segmented), std::back_inserter(findings));

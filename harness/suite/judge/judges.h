@@ -125,7 +125,9 @@ struct JudgedRecording {
   truth::Golden
       proposed;  ///< what the recording yields now, with what people wrote into the golden
 
-  bool Agrees() const { return golden && comparison.Agrees(); }
+  bool Agrees() const {
+    return golden && comparison.Agrees() && golden->grammar == proposed.grammar;
+  }
 };
 
 /// Where the golden of a recording is: beside the file that it comes from. Of a demonstration in an

@@ -51,6 +51,7 @@ class GoldenValidator {
         Complain(line, event,
                  fmt::format("'{}' has a role '{}', which is missing here", event, role), "");
     }
+    CheckOrder(line, *signature);
     const Names& values = signature->attributes;
     for (const grammar::NamedValue& value : line.event.values) {
       if (std::ranges::count(values, value.name) == 0)
@@ -83,13 +84,33 @@ class GoldenValidator {
                 role.value, entity_table_.styles);
       return;
     }
-    if (std::ranges::count(event.roles, role.name) == 0)
+    const auto own = std::ranges::find(event.roles, role.name);
+    if (own == event.roles.end())
       return Unknown(line, role.name + "=",
                      fmt::format("'{}' has no role '{}'", event.name, role.name), role.name,
                      event.roles);
-    if (std::ranges::count(entities_, role.value) == 0)
-      Unknown(line, role.name + "=", "the scenario has no '" + role.value + "'", role.value,
-              entities_);
+    const auto entity =
+        std::ranges::find(entity_table_.entities, role.value, &grammar::EntityInfo::name);
+    if (entity == entity_table_.entities.end())
+      return Unknown(line, role.name + "=", "the scenario has no '" + role.value + "'", role.value,
+                     entities_);
+    const std::string& wanted = event.classes[static_cast<std::size_t>(own - event.roles.begin())];
+    if (std::ranges::count(entity->classes, wanted) == 0)
+      Complain(line, role.name + "=",
+               fmt::format("'{}' is never '{}' of '{}', which takes {}", role.value, role.name,
+                           event.name, grammar::WithArticle(wanted)),
+               "");
+  }
+
+  /// Recognised in one order only, however a person thinks of it.
+  void CheckOrder(const truth::GoldenEvent& line, const grammar::EventSignature& event) {
+    if (!event.symmetric) return;
+    const std::string& first = truth::RoleValue(line.event, event.roles[0]);
+    const std::string& second = truth::RoleValue(line.event, event.roles[1]);
+    if (first.empty() || first <= second) return;
+    Complain(line, event.roles[0] + "=",
+             fmt::format("the two of '{}' stand in the order of the alphabet", event.name),
+             fmt::format("{}={} {}={}", event.roles[0], second, event.roles[1], first));
   }
 
   void Unknown(const truth::GoldenEvent& line, const std::string& word, std::string message,
