@@ -26,6 +26,7 @@ constexpr std::size_t kKeyFrames = 10;
 constexpr int kMostScenes = 10;
 constexpr double kSheetWidth_px = 1100;
 constexpr double kBeside = 0.7;  ///< width of a chart beside another one
+constexpr double kNarrow = 30;   ///< in heights of the text: nothing has room beside this
 constexpr const char* kTwist = "bimanual/plate_of_a_kilogram_twists_out_of_one_hand";
 
 struct Kind {
@@ -244,19 +245,22 @@ tl::expected<std::string, ExitCode> ChartOf(const Kind& kind, const suite::Playe
 ExitCode DrawCharts(const Kind& kind, const std::vector<std::string>& scenarios,
                     const ParsedOptions& options, const CommandContext& context) {
   std::vector<std::string> svgs;
-  show::ChartFormat format;
+  show::ChartFormat format = SceneFormatOf(options, "", 900).chart;
+  const bool beside =
+      format.width_px / static_cast<double>(scenarios.size()) >= kNarrow * format.text_px;
+  const std::size_t columns = beside || !options.Has("--width") ? scenarios.size() : 1;
   for (const std::string& typed : scenarios) {
     const auto played = PlayTyped(typed, options, context);
     if (!played) return played.error();
     if (const std::string why = WhyNotShown(options, played->loaded.scenario, played->run);
         !why.empty())
       return Refuse(context, why);
-    const auto svg =
-        ChartOf(kind, *played, options, context, static_cast<int>(scenarios.size()), format);
+    const auto svg = ChartOf(kind, *played, options, context, static_cast<int>(columns), format);
     if (!svg) return svg.error();
     svgs.push_back(*svg);
   }
-  return WriteOut(svgs.size() == 1 ? svgs[0] : BesideEachOther(svgs, format), options, context);
+  return WriteOut(svgs.size() == 1 ? svgs[0] : BesideEachOther(svgs, format, columns), options,
+                  context);
 }
 
 /// A file of drawn episodes, of which `--episode` names one by its number or title.

@@ -19,6 +19,10 @@ constexpr std::array<const char*, 4> kDashes = {"none", "6 3", "2 3", "8 3 2 3"}
 constexpr double kFoot = 5.6;              ///< height of times and legend, in heights of the text
 constexpr double kPageFoot = 3.6;          ///< without legend
 constexpr std::size_t kMostPoints = 1500;  ///< of a curve; more cannot be seen
+constexpr std::size_t kMostNameLines = 3;  ///< of a row
+constexpr double kMargin_px = 10;
+constexpr double kLetter = 0.6, kBoldLetter = 0.68;  ///< width, in heights of the text
+constexpr double kLine = 1.35;                       ///< from one line of a text to the next
 
 std::string Number(double value) { return SvgNumber(value); }
 std::string ColorText(std::uint32_t color) { return fmt::format("#{:06X}", color); }
@@ -32,20 +36,26 @@ bool IsLight(std::uint32_t color) {
 class Drawing {
  public:
   Drawing(const Chart& chart, const ChartFormat& format) : chart_(chart), format_(format) {
-    const double letter_px = 0.6 * format.text_px;
     std::size_t longest = 0;
-    for (const Row& row : chart.rows) longest = std::max(longest, row.name.size());
-    left_ = 20 + std::clamp(letter_px * static_cast<double>(longest), 50.0, 0.5 * format.width_px);
+    for (const Row& row : chart.rows) {
+      std::vector<std::string>& lines =
+          names_.emplace_back(BrokenLines(row.name, LettersIn(0.42 * format.width_px, kLetter)));
+      if (lines.size() > kMostNameLines) lines.resize(kMostNameLines), lines.back() += "…";
+      for (const std::string& line : lines) longest = std::max(longest, line.size());
+    }
+    left_ = 20 + std::clamp(WidthOf(longest, kLetter), 50.0, 0.5 * format.width_px);
     right_ = format.width_px - 14;
+    title_ = BrokenLines(chart.title, LettersIn(right_, kBoldLetter));
     for (const Row& row : chart.rows) headings_ += row.heading.empty() ? 0 : 1;
+    for (const Panel& panel : chart.panels) heads_.push_back(HeadOf(panel));
     LayOutLegend();
   }
 
   double Height() const {
-    const double panels = static_cast<double>(chart_.panels.size());
-    double rows_px = HeadingPx() * headings_;
-    for (const Row& row : chart_.rows) rows_px += RowPx(row);
-    return Top() + rows_px + (GapPx() + PanelPx()) * panels + FootPx();
+    double height = Top() + HeadingPx() * headings_ + FootPx();
+    for (std::size_t i = 0; i < chart_.rows.size(); ++i) height += RowPx(i);
+    for (const Head& head : heads_) height += GapPx(head) + PanelPx();
+    return height;
   }
   double Left() const { return left_; }
   double PerSecond() const { return (right_ - left_) / (chart_.to_s - chart_.from_s); }
@@ -53,31 +63,46 @@ class Drawing {
   void AddTo(pugi::xml_node svg) {
     svg_ = svg;
     // Above the rows; a long title begins further left.
-    const double title_px = 0.68 * format_.text_px * static_cast<double>(chart_.title.size());
-    if (!chart_.title.empty())
-      Text("title", std::clamp(right_ - title_px, 4.0, left_), 1.4 * format_.text_px, chart_.title,
-           "start", "bold");
+    if (!chart_.title.empty()) BoldLines("title", title_, 1.4 * format_.text_px);
     double y = Top();
     DrawTimes(y, Height() - FootPx());
     DrawMarks(Height() - FootPx());
-    for (const Row& row : chart_.rows) {
-      if (!row.heading.empty()) {
-        Text("group", 4, y + 1.2 * format_.text_px, row.heading, "start", "bold");
+    for (std::size_t i = 0; i < chart_.rows.size(); ++i) {
+      if (const std::string& heading = chart_.rows[i].heading; !heading.empty()) {
+        Text("group", 4, y + 1.2 * format_.text_px, heading, "start", "bold");
         y += HeadingPx();
       }
-      DrawRow(row, y, RowPx(row));
-      y += RowPx(row);
+      DrawRow(i, y, RowPx(i));
+      y += RowPx(i);
     }
-    for (const Panel& panel : chart_.panels) {
-      y += GapPx();
-      DrawPanel(panel, y, PanelPx());
+    for (std::size_t i = 0; i < chart_.panels.size(); ++i) {
+      y += GapPx(heads_[i]);
+      DrawHead(chart_.panels[i], heads_[i], y);
+      DrawPanel(chart_.panels[i], y, PanelPx());
       y += PanelPx();
     }
     DrawLegend(Height() - 0.8 * format_.text_px - more_lines_ * LegendPx());
   }
 
  private:
-  double RowPx(const Row& row) const { return std::max(1.9, 0.8 * row.lanes) * format_.text_px; }
+  /// What stands above a panel: its name, and on the right of it or below it what its curves are.
+  struct Head {
+    std::vector<std::string> name;
+    std::vector<std::pair<double, double>> keys;  ///< of the curves: from the left, line
+    double lines = 1;
+  };
+
+  double WidthOf(std::size_t letters, double letter) const {
+    return letter * format_.text_px * static_cast<double>(letters);
+  }
+  std::size_t LettersIn(double width_px, double letter) const {
+    return static_cast<std::size_t>(std::max(8.0, width_px / (letter * format_.text_px)));
+  }
+
+  double RowPx(std::size_t row) const {
+    const double lines = static_cast<double>(names_[row].size());
+    return std::max({1.9, 0.8 * chart_.rows[row].lanes, kLine * lines + 0.55}) * format_.text_px;
+  }
   double PanelPx() const { return format_.panel_texts * format_.text_px; }
   double HeadingPx() const { return 1.7 * format_.text_px; }
   bool InPage() const { return !format_.page_class.empty(); }
@@ -85,9 +110,12 @@ class Drawing {
   double FootPx() const {
     return (InPage() ? kPageFoot : kFoot) * format_.text_px + more_lines_ * LegendPx();
   }
-  double GapPx() const { return 1.6 * format_.text_px; }
+  double GapPx(const Head& head) const {
+    return (1.6 + kLine * (head.lines - 1)) * format_.text_px;
+  }
   double Top() const {
-    return (chart_.title.empty() ? 8 : 2.4 * format_.text_px) +
+    const double more_lines = static_cast<double>(title_.size()) - 1;
+    return (chart_.title.empty() ? 8 : (2.4 + kLine * more_lines) * format_.text_px) +
            (chart_.marks.empty() ? 0 : 1.3 * format_.text_px);
   }
 
@@ -118,6 +146,16 @@ class Drawing {
     if (dash) Paint(line, "", {{"stroke-dasharray", dash}});
   }
 
+  /// Begins over the axis, or further left if it is long.
+  void BoldLines(const std::string& style, const std::vector<std::string>& lines, double y) {
+    std::size_t longest = 0;
+    for (const std::string& line : lines) longest = std::max(longest, line.size());
+    const double x = std::clamp(right_ - WidthOf(longest, kBoldLetter), 4.0, left_);
+    for (std::size_t i = 0; i < lines.size(); ++i)
+      Text(style, x, y + kLine * format_.text_px * static_cast<double>(i), lines[i], "start",
+           "bold");
+  }
+
   /// For the script of the page, which zooms.
   static void AddTimes(pugi::xml_node node, double begin_s, double end_s) {
     const auto exact = [](double time_s) {
@@ -134,8 +172,14 @@ class Drawing {
     return {y + pitch * lane + (lane == 0 ? 2 : 1), pitch - 3};
   }
 
-  void DrawRow(const Row& row, double y, double height) {
-    Text(row.style, left_ - 8, y + 0.5 * height + 0.35 * format_.text_px, row.name, "end");
+  void DrawRow(std::size_t index, double y, double height) {
+    const Row& row = chart_.rows[index];
+    const std::vector<std::string>& name = names_[index];
+    for (std::size_t i = 0; i < name.size(); ++i) {
+      const double line = static_cast<double>(i) - 0.5 * static_cast<double>(name.size() - 1);
+      Text(row.style, left_ - 8, y + 0.5 * height + (0.35 + kLine * line) * format_.text_px,
+           name[i], "end");
+    }
     for (const Bar& bar : row.bars) {
       if (IsShown(bar)) DrawBar(bar, row, y, height);
     }
@@ -143,7 +187,7 @@ class Drawing {
   }
 
   void DrawBar(const Bar& bar, const Row& row, double y, double height) {
-    const double x = X(bar.begin_s), width = WidthOf(bar);
+    const double x = X(bar.begin_s), width = BarPx(bar);
     const auto [top, tall] = Place(y, height, bar.lane, row.lanes);
     pugi::xml_node node = AddElement(svg_, "rect",
                                      {{"x", Number(x)},
@@ -225,21 +269,49 @@ class Drawing {
       Text("axis", left_ - 8, y_of(tick) + 0.35 * format_.text_px, Number(tick), "end");
     }
     Line("base", left_, top, left_, top + height, kInk);
-    double legend = right_;
-    for (std::size_t i = 0; i < panel.curves.size(); ++i) {
-      const Curve& curve = panel.curves[i];
-      const char* color = kColors[i % kColors.size()];
-      const char* dash = kDashes[i % kDashes.size()];
-      DrawCurve(curve, y_of, color, dash);
-      const double name_px = 0.6 * format_.text_px * static_cast<double>(curve.name.size());
-      legend -= name_px + 34;
-      if (panel.curves.size() > 1 || !curve.name.empty()) {
-        const double y = top - 0.4 * format_.text_px;
-        Line(curve.style, legend, y, legend + 22, y, color, "2", dash);
-        Text("axis", legend + 26, top - 0.1 * format_.text_px, curve.name, "start");
-      }
+    for (std::size_t i = 0; i < panel.curves.size(); ++i)
+      DrawCurve(panel.curves[i], y_of, kColors[i % kColors.size()], kDashes[i % kDashes.size()]);
+  }
+
+  Head HeadOf(const Panel& panel) const {
+    const auto key_px = [&](const Curve& curve) {
+      return WidthOf(curve.name.size(), kLetter) + 34;
+    };
+    Head head{.name = {panel.name}};
+    double x = right_;
+    for (const Curve& curve : panel.curves) {
+      x -= key_px(curve);
+      head.keys.emplace_back(x, 0);
     }
-    Text("axis", left_, top - 0.1 * format_.text_px, panel.name, "start", "bold");
+    const bool has_no_key = panel.curves.size() == 1 && panel.curves[0].name.empty();
+    if (has_no_key) head.keys.clear();
+    const double name_px = WidthOf(panel.name.size(), kBoldLetter);
+    if (name_px <= (has_no_key ? right_ : x) - left_) return head;
+    head.name = BrokenLines(panel.name, LettersIn(right_, kBoldLetter));
+    double line = static_cast<double>(head.name.size());
+    x = kMargin_px;
+    for (std::size_t i = 0; i < head.keys.size(); ++i) {
+      const double width = key_px(panel.curves[i]);
+      if (x > kMargin_px && x + width > format_.width_px) x = kMargin_px, ++line;
+      head.keys[i] = {x, line};
+      x += width;
+    }
+    head.lines = line + (has_no_key ? 0 : 1);
+    return head;
+  }
+
+  void DrawHead(const Panel& panel, const Head& head, double top) {
+    const auto y_of = [&](double line) {
+      return top - (0.1 + kLine * (head.lines - 1 - line)) * format_.text_px;
+    };
+    for (std::size_t i = 0; i < head.keys.size(); ++i) {
+      const auto [x, line] = head.keys[i];
+      const double y = y_of(line) - 0.3 * format_.text_px;
+      Line(panel.curves[i].style, x, y, x + 22, y, kColors[i % kColors.size()], "2",
+           kDashes[i % kDashes.size()]);
+      Text("axis", x + 26, y_of(line), panel.curves[i].name, "start");
+    }
+    BoldLines("axis", head.name, y_of(0));
   }
 
   template <typename YOf>
@@ -269,10 +341,9 @@ class Drawing {
   bool IsShown(const Bar& bar) const {
     return bar.end_s > chart_.from_s && bar.begin_s < chart_.to_s;
   }
-  double WidthOf(const Bar& bar) const { return std::max(1.5, X(bar.end_s) - X(bar.begin_s)); }
+  double BarPx(const Bar& bar) const { return std::max(1.5, X(bar.end_s) - X(bar.begin_s)); }
   bool HasText(const Bar& bar) const {
-    const double text_px = 0.62 * format_.text_px * static_cast<double>(bar.text.size());
-    return text_px < WidthOf(bar) - 6 || (InPage() && !bar.text.empty());
+    return WidthOf(bar.text.size(), 0.62) < BarPx(bar) - 6 || (InPage() && !bar.text.empty());
   }
 
   /// What the colours mean whose bars are too short for their texts, in lines.
@@ -281,11 +352,16 @@ class Drawing {
     for (const Row& row : chart_.rows)
       for (const Bar& bar : row.bars)
         if (IsShown(bar) && !HasText(bar) && !bar.kind.empty()) unnamed[bar.kind] = bar.color;
-    double x = left_;
+    const auto width_of = [&](const std::string& kind) {
+      return 3 * format_.text_px + WidthOf(kind.size(), 0.62);
+    };
+    double begin = left_, x = left_;
+    for (const auto& [kind, color] : unnamed) x += width_of(kind);
+    if (x > format_.width_px) begin = kMargin_px;
+    x = begin;
     for (const auto& [kind, color] : unnamed) {
-      const double width =
-          3 * format_.text_px + 0.62 * format_.text_px * static_cast<double>(kind.size());
-      if (x > left_ && x + width > format_.width_px) x = left_, ++more_lines_;
+      const double width = width_of(kind);
+      if (x > begin && x + width > format_.width_px) x = begin, ++more_lines_;
       keys_.push_back({x, more_lines_ * LegendPx(), kind, color});
       x += width;
     }
@@ -316,12 +392,17 @@ class Drawing {
       if (!InPage()) Line("", X(at), bottom, X(at), bottom + 4, kInk);
       Text("axis", X(at), bottom + 4 + 1.1 * format_.text_px, text, "middle");
     }
-    Text("name", (left_ + right_) / 2, bottom + 8 + 2.3 * format_.text_px, chart_.axis, "middle");
+    const double half_px = WidthOf(chart_.axis.size(), kLetter) / 2;
+    Text("name", std::min((left_ + right_) / 2, format_.width_px - half_px),
+         bottom + 8 + 2.3 * format_.text_px, chart_.axis, "middle");
   }
 
   const Chart& chart_;
   const ChartFormat& format_;
   double left_ = 0, right_ = 0, headings_ = 0, more_lines_ = 0;
+  std::vector<std::string> title_;
+  std::vector<std::vector<std::string>> names_;  ///< of the rows, in lines
+  std::vector<Head> heads_;                      ///< of the panels
   pugi::xml_node svg_;
   struct Key {
     double x = 0, down = 0;
@@ -347,6 +428,24 @@ std::vector<double> RoundTicks(double from, double to, int most) {
        static_cast<double>(i) * step <= to + 1e-9 * step; ++i)
     ticks.push_back(static_cast<double>(i) * step);
   return ticks;
+}
+
+std::vector<std::string> BrokenLines(const std::string& text, std::size_t most) {
+  std::vector<std::string> lines;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    std::size_t end = std::min(text.find('\n', begin), text.size());
+    if (end - begin > most) {
+      const std::size_t space = text.rfind(' ', begin + most),
+                        inside = text.find_last_of("_(,/", begin + most - 1);
+      end = begin + most;
+      while (end > begin + 1 && (text[end] & 0xC0) == 0x80) --end;  // not inside a letter of UTF-8
+      if (inside != std::string::npos && inside > begin) end = inside + (text[inside] != '(');
+      if (space != std::string::npos && space > begin) end = space;
+    }
+    lines.push_back(text.substr(begin, end - begin));
+    begin = end + (end == text.size() || text[end] == ' ' || text[end] == '\n' ? 1 : 0);
+  }
+  return lines;
 }
 
 std::string SvgNumber(double value) { return fmt::format("{:.6g}", value); }

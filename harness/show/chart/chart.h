@@ -90,6 +90,10 @@ pugi::xml_node AddDrawing(pugi::xml_document& document, const ChartFormat& forma
 /// Of lines and texts.
 inline constexpr const char* kInk = "#222222";
 
+/// Broken where it says, and where a line would have more letters than `most`: at a blank, else
+/// inside a name.
+std::vector<std::string> BrokenLines(const std::string& text, std::size_t most);
+
 /// As SVG wants numbers.
 std::string SvgNumber(double value);
 

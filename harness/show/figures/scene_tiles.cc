@@ -107,18 +107,10 @@ class SheetDrawing {
   /// Broken where it says and where it would be too wide. Returns the number of lines.
   double DrawLines(const std::string& text, const char* weight, double x, double top, double width,
                    double line_px) {
-    const auto most = static_cast<std::size_t>(std::max(8.0, width / (0.62 * format_.text_px)));
     double lines = 0;
-    for (std::size_t begin = 0; begin <= text.size();) {
-      std::size_t end = std::min(text.find('\n', begin), text.size());
-      if (end - begin > most) {
-        const std::size_t space = text.rfind(' ', begin + most);
-        end = space != std::string::npos && space > begin ? space : begin + most;
-      }
-      ++lines;
-      Text(x, top + lines * line_px, text.substr(begin, end - begin), weight);
-      begin = end + (end == text.size() || text[end] == ' ' || text[end] == '\n' ? 1 : 0);
-    }
+    for (const std::string& line : BrokenLines(
+             text, static_cast<std::size_t>(std::max(8.0, width / (0.62 * format_.text_px)))))
+      Text(x, top + ++lines * line_px, line, weight);
     return lines;
   }
 
@@ -328,21 +320,23 @@ std::string SheetSvg(const Sheet& sheet, const ChartFormat& format) {
   return SheetDrawing(sheet, format).Run();
 }
 
-std::string BesideEachOther(const std::vector<std::string>& svgs, const ChartFormat& format) {
+std::string BesideEachOther(const std::vector<std::string>& svgs, const ChartFormat& format,
+                            std::size_t columns) {
   std::vector<pugi::xml_document> parts(svgs.size());
-  double height = 0;
+  double top = 0, bottom = 0;
   for (std::size_t i = 0; i < svgs.size(); ++i) {
+    if (i % columns == 0) top = bottom;
     parts[i].load_string(svgs[i].c_str());
-    height = std::max(height, parts[i].child("svg").attribute("height").as_double());
+    pugi::xml_node svg = parts[i].child("svg");
+    svg.append_attribute("x").set_value(format.width_px * static_cast<double>(i % columns));
+    svg.append_attribute("y").set_value(top);
+    bottom = std::max(bottom, top + svg.attribute("height").as_double());
   }
   ChartFormat all = format;
-  all.width_px *= static_cast<double>(svgs.size());
+  all.width_px *= static_cast<double>(columns);
   pugi::xml_document document;
-  pugi::xml_node svg = AddDrawing(document, all, height);
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const double left = format.width_px * static_cast<double>(i);
-    svg.append_copy(parts[i].child("svg")).append_attribute("x").set_value(left);
-  }
+  pugi::xml_node svg = AddDrawing(document, all, bottom);
+  for (const pugi::xml_document& part : parts) svg.append_copy(part.child("svg"));
   return ToText(document, Layout::kIndented);
 }
 

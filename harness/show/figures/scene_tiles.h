@@ -48,8 +48,9 @@ double TileWidth(const ChartFormat& format, int columns);
 
 std::string SheetSvg(const Sheet& sheet, const ChartFormat& format = {});
 
-/// Drawings of one width beside each other.
-std::string BesideEachOther(const std::vector<std::string>& svgs, const ChartFormat& format);
+/// Drawings of one width in rows of so many.
+std::string BesideEachOther(const std::vector<std::string>& svgs, const ChartFormat& format,
+                            std::size_t columns);
 
 /// "a", "b", .. "z", "aa", ..
 std::string LetterOf(std::size_t number);

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstring>
 #include <pugixml.hpp>
+#include <string>
+#include <vector>
 
 namespace prehend::show {
 namespace {
@@ -75,6 +77,48 @@ TEST(Chart, ALegendThatIsTooLongGoesOnInTheNextLine) {
     EXPECT_LT(at(key, "y"), svg.child("svg").attribute("height").as_double());
   }
   EXPECT_LT(at(keys[0], "y"), at(keys[11], "y"));
+}
+
+TEST(Chart, NothingIsCutOrOverprintedWhereItIsNarrow) {
+  const std::vector<Curve> curves = {{"right_hand", {{0, 1}}}, {"left_hand", {{0, 1}}}};
+  const Chart chart{.title = "plate_of_a_kilogram_twists_out_of_one_hand, pick_and_place",
+                    .rows = {{"right_hand: grasping (pick_and_place)", {{0, 1, "milk"}}}},
+                    .panels = {{"distance to what is seen, m", curves}, {"grip", {{"", {}}}}}};
+  for (const double width_px : {170.0, 227.0, 336.0, 900.0}) {
+    pugi::xml_document svg;
+    ASSERT_TRUE(svg.load_string(ChartSvg(chart, {.width_px = width_px, .text_px = 9.3}).c_str()));
+    struct Box {
+      double left, right, base;
+    };
+    std::vector<Box> boxes;
+    for (const auto& node : svg.select_nodes("//text")) {
+      const pugi::xml_node text = node.node();
+      const std::string anchor = text.attribute("text-anchor").value();
+      const bool bold = std::strcmp(text.attribute("font-weight").value(), "bold") == 0;
+      const double wide =
+          (bold ? 0.68 : 0.6) * 9.3 * static_cast<double>(std::strlen(text.child_value()));
+      const double x = text.attribute("x").as_double(), left = anchor == "end"      ? x - wide
+                                                               : anchor == "middle" ? x - wide / 2
+                                                                                    : x;
+      EXPECT_GE(left, 0) << text.child_value() << " at " << width_px;
+      EXPECT_LE(left + wide, width_px) << text.child_value() << " at " << width_px;
+      const Box box{left, left + wide, text.attribute("y").as_double()};
+      for (const Box& other : boxes)
+        EXPECT_TRUE(box.left >= other.right || other.left >= box.right ||
+                    std::abs(box.base - other.base) > 6)
+            << text.child_value() << " at " << width_px;
+      boxes.push_back(box);
+    }
+  }
+}
+
+TEST(Chart, LinesAreBrokenAtBlanksElseInNames) {
+  using Lines = std::vector<std::string>;
+  EXPECT_EQ(BrokenLines("one two", 7), Lines{"one two"});
+  EXPECT_EQ(BrokenLines("one two three", 8), (Lines{"one two", "three"}));
+  EXPECT_EQ(BrokenLines("contact(milk, right_hand)", 13), (Lines{"contact(milk,", "right_hand)"}));
+  EXPECT_EQ(BrokenLines("pick_and_place(hand)", 15), (Lines{"pick_and_place", "(hand)"}));
+  EXPECT_EQ(BrokenLines("\u00e4\u00e4\u00e4", 3), (Lines{"\u00e4", "\u00e4", "\u00e4"}));
 }
 
 TEST(Chart, OfNothingIsEmptyButValid) {
