@@ -173,6 +173,23 @@ TEST(Query, EachAnswerIsDrawn) {
             "file,episode,scenario,event,begin_s,end_s,roles,picture");
 }
 
+TEST(Query, AnEventComesWithItsValues) {
+  const auto folder = FreshFolder("query_values");
+  const std::string file = (folder / "a.episodes").string(),
+                    rules = (folder / "own.grammar").string();
+  WriteFile(rules,
+            "grammar own\nevent near(hand: Hand, object: Movable)\n"
+            "  while distance(hand, object) < 20 cm\n  with far = distance(hand, object)@begin\n");
+  ASSERT_EQ(Prehend({"run", "milk_carton_wrap", "--grammar", rules, "--record", file}).exit_code,
+            0);
+  const Said table = Prehend({"episode", "query", file, "--event", "near"});
+  EXPECT_NE(table.out.find("object=milk far=0."), std::string::npos) << table.out;
+  const auto all = Asked(file, {"--event", "near"});
+  ASSERT_FALSE(all.empty());
+  EXPECT_GT(all[0]["attributes"]["far"], 0.1);
+  EXPECT_LE(all[0]["attributes"]["far"], 0.2);
+}
+
 TEST(Query, UnknownNamesAreNamed) {
   const auto file = (FreshFolder("query_names") / "a.episodes").string();
   ASSERT_EQ(Prehend({"run", "milk_carton_wrap", "--record", file}).exit_code, 0);
@@ -186,6 +203,15 @@ TEST(Query, UnknownNamesAreNamed) {
   const Said typo = Prehend({"episode", "query", file, "--event", "graping"});
   EXPECT_EQ(typo.exit_code, 4);
   EXPECT_EQ(typo.err, "prehend: no event is called 'graping'; did you mean 'grasping'?\n");
+  const std::pair<std::string, std::string> values[] = {
+      {"object=mlk", "milk"}, {"hand=right_hnd", "right_hand"}, {"object=Movble", "Movable"}};
+  for (const auto& [asked, meant] : values) {
+    const Said unknown = Prehend({"episode", "query", file, "--role", asked});
+    EXPECT_EQ(unknown.exit_code, 4);
+    EXPECT_EQ(unknown.err, "prehend: --role: nothing is called '" +
+                               asked.substr(asked.find('=') + 1) + "', or is one; did you mean '" +
+                               meant + "'?\n");
+  }
 }
 
 }  // namespace

@@ -36,16 +36,20 @@ std::string RolesText(const grammar::NamedEvent& event) {
   std::string text;
   for (const grammar::Role& role : event.roles)
     text += (text.empty() ? "" : " ") + role.name + "=" + role.value;
+  for (const grammar::NamedValue& value : event.values)
+    text += " " + value.name + "=" + truth::ValueText(value);
   return text;
 }
 
 Json EventJson(const EventAnswer& answer, const grammar::NamedEvent& event) {
   Json roles = Json::object();
   for (const grammar::Role& role : event.roles) roles[role.name] = role.value;
-  return {{"event", event.event},
-          {"roles", std::move(roles)},
-          {"begin_s", SecondsAt(answer, event.interval.begin)},
-          {"end_s", SecondsAt(answer, event.interval.end)}};
+  Json one = {{"event", event.event},
+              {"roles", std::move(roles)},
+              {"begin_s", SecondsAt(answer, event.interval.begin)},
+              {"end_s", SecondsAt(answer, event.interval.end)}};
+  for (const grammar::NamedValue& value : event.values) one["attributes"][value.name] = value.value;
+  return one;
 }
 
 /// `pictures`: one file per answer, or none.
@@ -243,6 +247,29 @@ std::string UnknownRole(const EventQuestion& question, const std::set<std::strin
   return "";
 }
 
+/// What may be meant by names that nothing has, of which no answer can be.
+std::string NearestNames(const EventQuestion& question, const episode::KnownNames& known) {
+  const auto near = [](const std::string& name, const std::set<std::string>& names) {
+    return names.contains(name)
+               ? ""
+               : grammar::NearestName(name, std::vector<std::string>(names.begin(), names.end()));
+  };
+  std::string text;
+  if (const std::string event = near(question.event, known.events); !event.empty())
+    text += fmt::format("prehend: no event is called '{}'; did you mean '{}'?\n", question.event,
+                        event);
+  for (const auto& [option, conditions] :
+       {std::pair{"--role", &question.roles}, std::pair{"--part-of", &question.parts_of}}) {
+    for (const episode::RoleCondition& condition : *conditions) {
+      const std::string value = near(condition.value, known.values);
+      if (!value.empty())
+        text += fmt::format("prehend: {}: nothing is called '{}', or is one; did you mean '{}'?\n",
+                            option, condition.value, value);
+    }
+  }
+  return text;
+}
+
 ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--json") && options.Has("--csv"))
     return Refuse(context, "--json contradicts --csv; give one of them");
@@ -271,11 +298,7 @@ ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
     return Refuse(context, why);
   if (const std::string why = UnknownColumn(columns, known.roles); !why.empty())
     return Refuse(context, why);
-  const std::vector<std::string> events(known.events.begin(), known.events.end());
-  if (const std::string near = grammar::NearestName(question.event, events);
-      answers.empty() && !known.events.contains(question.event) && !near.empty())
-    context.err << fmt::format("prehend: no event is called '{}'; did you mean '{}'?\n",
-                               question.event, near);
+  if (answers.empty()) context.err << NearestNames(question, known);
   show::MomentPictures drawn;
   if (options.Has("--show")) {
     std::vector<show::Moment> moments;

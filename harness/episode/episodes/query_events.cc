@@ -205,10 +205,17 @@ Result<std::vector<EventAnswer>> Ask(const std::string& path, const EventQuestio
     if (!IsSelected(row, question.scenario)) continue;
     PREHEND_TRY(const grammar::Timeline timeline, file.TimelineOf(row));
     PREHEND_TRY(const std::vector<KeptEntity> entities, file.EntitiesOf(row));
+    for (const KeptEntity& entity : entities) {
+      known.values.insert(entity.name);
+      known.values.insert(entity.classes.begin(), entity.classes.end());
+    }
     const Asker asker(question, entities, timeline);
     for (const grammar::NamedEvent& event : timeline.events) {
       known.events.insert(event.event);
-      for (const grammar::Role& role : event.roles) known.roles.insert(role.name);
+      for (const grammar::Role& role : event.roles) {
+        known.roles.insert(role.name);
+        known.values.insert(role.value);
+      }
       if (!asker.Holds(event)) continue;
       EventAnswer& answer = answers.emplace_back();
       answer = {path, row.id, row.scenario, row.ticks_per_second, event, {}, {}};

@@ -59,9 +59,10 @@ std::vector<const grammar::NamedEvent*> PartsOf(const grammar::NamedEvent& whole
                                                 const grammar::Timeline& timeline,
                                                 const std::vector<KeptEntity>& entities);
 
-/// What the events of files are called, and their roles.
+/// What the events of files are called, their roles, and who or what may have them: entities and
+/// classes.
 struct KnownNames {
-  std::set<std::string> events, roles;
+  std::set<std::string> events, roles, values;
 };
 
 /// The answers in one file, in the order of episodes and time. `known` gets the names in it.
