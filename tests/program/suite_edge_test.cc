@@ -59,9 +59,14 @@ TEST_F(SuiteEdge, ARenamedScenarioKeepsItsGoldenAndReasons) {
   Accept();
   WriteFile(root_ / "golden/rest/carton_rests.png", "a picture");
   WriteFile(root_ / "golden/rest/carton_rests-2.png", "another one");
+  WriteFile(root_ / "golden/rest/carton_rests-2.things", "what it shows");
   const std::string golden = ReadFile(Golden());
   const Said said = Do("scenario rename carton_rests still/box_rests");
   ASSERT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_EQ(ReadFile(root_ / "golden/still/box_rests-2.things"), "what it shows");
+  EXPECT_FALSE(fs::exists(root_ / "golden/rest/carton_rests-2.things"));
+  EXPECT_NE(said.out.find("prehend accept still/box_rests --pictures"), std::string::npos)
+      << said.out;
   EXPECT_FALSE(fs::exists(Scenario()));
   EXPECT_FALSE(fs::exists(Golden()));
   EXPECT_EQ(ReadFile(Golden("still/box_rests")),

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/text_file.h"
@@ -15,6 +16,8 @@
 #include "harness/episode/run/run_scenario.h"
 #include "harness/exchange/poses/import_map.h"
 #include "harness/scenario/format/scenario_fields.h"
+#include "harness/show/pictures/pictures.h"
+#include "harness/suite/judge/validate_golden.h"
 #include "harness/truth/golden/golden.h"
 #include "harness/truth/timeline/event_text.h"
 
@@ -257,15 +260,27 @@ ExitCode RunRename(const ParsedOptions& options, const CommandContext& context) 
   problem = Move(found.path, renamed.path, *text, context);
   if (problem.empty() && has_golden)
     problem = Move(golden, goldens.GoldenPath(renamed.id), *golden_text, context);
+  bool has_pictures = false;
   for (const truth::KeptPicture& picture : goldens.PicturesOf(id)) {
     const std::string name =
         renamed.name + picture.path.filename().string().substr(found.name.size());
     const fs::path to = goldens.PicturePath(renamed.id, name);
     fs::create_directories(to.parent_path(), error);
-    fs::rename(picture.path, to, error);
-    if (error && problem.empty()) problem = to.string() + ": " + error.message();
-    if (!error) context.out << picture.path.string() << " -> " << to.string() << "\n";
+    const std::string things = show::ThingsFile(picture.path.string());
+    for (const auto& [file, place] :
+         {std::pair(picture.path, to),
+          std::pair(fs::path(things), fs::path(show::ThingsFile(to.string())))}) {
+      if (file == things && !fs::exists(file, error)) continue;
+      fs::rename(file, place, error);
+      if (error && problem.empty()) problem = place.string() + ": " + error.message();
+      if (!error) context.out << file.string() << " -> " << place.string() << "\n";
+    }
+    has_pictures = true;
   }
+  if (has_pictures)
+    context.out << "a picture without a caption of its own shows the name: if check finds that it "
+                   "differs, "
+                << suite::AcceptPicturesCommand(renamed.id) << "\n";
   goldens.RemovePending(id);
   return problem.empty() ? ExitCode::kAgrees : Complain(context, ExitCode::kFailure, problem);
 }
