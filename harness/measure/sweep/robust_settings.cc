@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <span>
@@ -197,8 +198,10 @@ std::string CsvText(const std::vector<Axis>& axes, const std::vector<SweepPoint>
   text += "f1,correct,extra,missed,begin_error_ms,end_error_ms,latency_ms\n";
   for (const SweepPoint& point : points) {
     for (std::size_t i = 0; i < axes.size(); ++i) text += axes[i].ValueText(point.at[i]) + ",";
-    text += fmt::format("{:.6f},{},{},{},{:.3f},{:.3f},{:.3f}\n", point.f1, point.correct,
-                        point.extra, point.missed, point.begin_ms, point.end_ms, point.latency_ms);
+    text += fmt::format("{:.6f},{},{},{}", point.f1, point.correct, point.extra, point.missed);
+    for (const double ms : {point.begin_ms, point.end_ms, point.latency_ms})
+      text += "," + (std::isnan(ms) ? "-" : fmt::format("{:.3f}", ms));
+    text += "\n";
   }
   return text;
 }
@@ -207,6 +210,10 @@ std::string RobustSettingsText(const std::vector<Axis>& axes, const SweepResult&
                                double within) {
   const RobustSettings robust = FindRobustSettings(axes, result.points, within);
   const SweepPoint& chosen = result.points[robust.chosen];
+  const auto ms_text = [](double ms, bool has_sign) {
+    return std::isnan(ms) ? "-"
+                          : fmt::format(fmt::runtime(has_sign ? "{:+.1f} ms" : "{:.1f} ms"), ms);
+  };
   const std::string measure =
       (result.measure.empty() ? "" : result.measure + "\n") + result.counted;
   const std::string tried =
@@ -242,8 +249,9 @@ std::string RobustSettingsText(const std::vector<Axis>& axes, const SweepResult&
   for (std::size_t i = 0; i < axes.size(); ++i)
     text += fmt::format(" {} = {}", axes[i].parameter, axes[i].ValueText(chosen.at[i]));
   return text +
-         fmt::format(" (F1 {:.2f} %, begin {:+.1f} ms, end {:+.1f} ms, latency {:.1f} ms)\n",
-                     100 * chosen.f1, chosen.begin_ms, chosen.end_ms, chosen.latency_ms) +
+         fmt::format(" (F1 {:.2f} %, begin {}, end {}, latency {})\n", 100 * chosen.f1,
+                     ms_text(chosen.begin_ms, true), ms_text(chosen.end_ms, true),
+                     ms_text(chosen.latency_ms, false)) +
          warnings;
 }
 

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <string>
 
@@ -359,9 +360,10 @@ Result<SweepResult> Sweep(const std::vector<episode::Take>& takes, const SweepRe
     SweepPoint& point = result.points[p];
     if (!request.one_at_a_time) point.at = IndicesOf(p, request.axes);
     point.f1 = Hits{point.correct, point.extra, point.missed}.F1();
-    point.begin_ms = Median(begins[p]);
-    point.end_ms = Median(ends[p]);
-    point.latency_ms = Median(latencies[p]);
+    for (const auto& [of, median] :
+         {std::pair(&begins[p], &point.begin_ms), std::pair(&ends[p], &point.end_ms),
+          std::pair(&latencies[p], &point.latency_ms)})
+      *median = of->empty() ? std::numeric_limits<double>::quiet_NaN() : Median(*of);
   }
   std::ranges::sort(result.left_out);
   return result;

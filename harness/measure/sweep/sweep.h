@@ -71,7 +71,7 @@ struct SweepPoint {
                                                     ///< a time: empty
   int correct = 0, extra = 0, missed = 0;           ///< events
   double f1 = 1;                                    ///< of these; 1 if there is nothing
-  double begin_ms = 0, end_ms = 0, latency_ms = 0;  ///< medians
+  double begin_ms = 0, end_ms = 0, latency_ms = 0;  ///< medians; NaN of nothing
 };
 
 struct SweepResult {

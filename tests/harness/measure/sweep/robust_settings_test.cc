@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "harness/measure/sweep/sweep.h"
 
@@ -48,6 +49,23 @@ TEST(SweepAxis, SaysWhatIsWrong) {
             "'reach_radius=10cm..50mm:5' goes from 'cm' to 'mm': both ends need the same unit");
   for (const char* bad : {"x", "x=1", "x=1..2", "x=1..2:1", "x=1..2:2b", "=1..2:3", "x=a..2:3"})
     EXPECT_NE(ProblemOf(bad).find("wanted NAME=FROM..TO:COUNT"), std::string::npos) << bad;
+}
+
+TEST(SweepCsv, WhatIsOfNothingHasADash) {
+  const std::vector<Axis> axes = {AxisOf("x=0..1:2")};
+  std::vector<SweepPoint> points = Points(axes, {0, 1});
+  points[0].missed = 2;
+  points[0].begin_ms = points[0].end_ms = points[0].latency_ms =
+      std::numeric_limits<double>::quiet_NaN();
+  points[1].begin_ms = -1.5;
+  EXPECT_EQ(CsvText(axes, points),
+            "x,f1,correct,extra,missed,begin_error_ms,end_error_ms,latency_ms\n"
+            "0,0.000000,0,0,2,-,-,-\n1,1.000000,0,0,0,-1.500,0.000,0.000\n");
+  points[1].f1 = 0;
+  points[0].f1 = 1;
+  EXPECT_NE(RobustSettingsText(axes, {.points = points}, 0.01)
+                .find("(F1 100.00 %, begin -, end -, latency -)"),
+            std::string::npos);
 }
 
 TEST(SweepRobustSettings, NobodyPicksAnEdge) {
