@@ -62,6 +62,9 @@ class Events(pd.DataFrame):
     def _constructor(self):
         return Events
 
+    def __reduce__(self):
+        return _restored, (pd.DataFrame(self), self.attrs)
+
     @property
     def roles(self) -> list:
         """Names of the columns that say who takes part, list of str."""
@@ -167,7 +170,7 @@ def of(timeline, episode, grammar, end, number=None):
         row = {"scenario": episode.name, "episode": number or 0, "event": event, **dict(members),
                "begin_s": begin / rate, "end_s": end_tick / rate, "decided_s": decided / rate, "open_end": open_end}
         roles.update(dict(members))
-        row.update({f"{name}_{unit.replace('/', '_per_')}" if unit else name: value for name, value, unit in values})
+        row.update(named_values(values))
         rows.append(row)
     order = sorted(roles, key=lambda role: (["hand", "object"] + list(roles)).index(role))
     columns = _FIRST + order + _LAST
@@ -175,6 +178,18 @@ def of(timeline, episode, grammar, end, number=None):
     table[order] = table[order].fillna("")
     table._source = Source(episode, grammar, end)
     return table
+
+
+def _restored(table, attrs):
+    """What was pickled: of which episode it is, is not known any more."""
+    table = Events(table)
+    table.attrs = attrs
+    return table
+
+
+def named_values(values):
+    """By name and unit: force_N."""
+    return {f"{name}_{unit.replace('/', '_per_')}" if unit else name: value for name, value, unit in values}
 
 
 def together(tables):

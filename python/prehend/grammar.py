@@ -402,5 +402,5 @@ class Monitor:
     def _told(self, timeline):
         rate = float(self._per_second)
         return [{"event": event, **dict(roles), "begin_s": begin / rate, "end_s": end / rate, "decided_s": decided / rate,
-                 "open_end": open_end, **{name: value for name, value, _ in values}}
+                 "open_end": open_end, **events.named_values(values)}
                 for event, roles, begin, end, decided, open_end, values in timeline]

@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Live: what `update` tells in a loop is what `segment` finds, and its memory stays."""
+import copy
 import json
 import os
+import pathlib
+import pickle
+import tempfile
 import threading
 import unittest
 import warnings
@@ -30,6 +34,25 @@ class Live(unittest.TestCase):
             self.assertTrue(all(one["decided_s"] <= time + 1e-4 for one in news))
             told += news
         return told + monitor.finish()
+
+    def test_values_have_units(self):
+        t, arrays = takes.carried(18)
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        file = pathlib.Path(folder.name) / "own.grammar"
+        file.write_text("grammar own\nevent near(hand: Hand, object: Movable)\n  while distance(hand, object) < 20 cm\n"
+                        "  with far = distance(hand, object)@begin\n", "utf-8")
+        monitor = prehend.Grammar(file).monitor(takes.ENTITIES)
+        told = self.watch(monitor, t, arrays)
+        self.assertIn("far_m", told[0])
+        self.assertIn("far_m", monitor.events(told).columns)
+        found = prehend.Grammar(file).segment(arrays, t=t, entities=takes.ENTITIES)
+        self.assertAlmostEqual(found["far_m"][0], told[0]["far_m"])
+        for again in (pickle.loads(pickle.dumps(found)), copy.deepcopy(found)):
+            self.assertIsInstance(again, type(found))
+            pd.testing.assert_frame_equal(pd.DataFrame(again), pd.DataFrame(found))
+        with self.assertRaisesRegex(prehend.Error, "of which episode"):
+            pickle.loads(pickle.dumps(found)).labels()
 
     def test_update_is_segment(self):
         t, arrays = takes.carried(18)
