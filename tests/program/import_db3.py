@@ -151,6 +151,20 @@ def main():
     again = [f["hands"]["hand"]["trigger"] for f in recording() if "hands" in f]
     assert abs(max(again) - 0.5) < 1e-9 and abs(min(again)) < 1e-9, (min(again), max(again))
 
+    # A bag whose writer still has half of it in a file beside: read, and nothing is left there.
+    bag(topics, messages[:len(messages) // 2], {"my_msgs/msg/Bodies": OWN})
+    live = sqlite3.connect(folder / "made.db3")
+    live.execute("PRAGMA journal_mode=WAL")
+    ids = dict(live.execute("SELECT name, id FROM topics"))
+    live.executemany("INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)",
+                     [(ids[n], ns, d) for n, ns, d in messages[len(messages) // 2:]])
+    live.commit()
+    (folder / "take.db3-wal").write_bytes((folder / "made.db3-wal").read_bytes())
+    expect_carried("take.db3", (folder / "made.db3").read_bytes(), map_of("/bodies[Cup]", "/bodies[Hand]", ", grip: {from: /width, open: 0.08, closed: 0}"))
+    assert not (folder / "take.db3-shm").exists()
+    live.close()
+    (folder / "take.db3-wal").unlink()
+
     for content, *why in ((b"x" * 3000, "no SQLite database"), (b"", "no tables"), (content[:5000], "damaged")):
         expect_refused("take.db3", content, own_map, *why)
     db = sqlite3.connect(folder / "other.db3")

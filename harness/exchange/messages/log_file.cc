@@ -11,7 +11,9 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 
+#include "harness/base/base/atomic_file.h"
 #include "harness/base/base/text_file.h"
 
 namespace prehend::exchange {
@@ -331,13 +333,22 @@ class Db3Reader {
   Db3Reader(LogFile& file, const std::string& path) : file_(file), path_(path) {}
 
   std::string Read() {
-    // A bag that is still written to, or was, has a file beside it; others may lie where no lock
-    // can.
+    // A bag that is still written to, or was, has a file beside it. SQLite reads that in a copy
+    // only, as it would leave another one there; others may lie where no lock can.
+    const bool is_written = std::filesystem::exists(path_ + "-wal");
+    if (is_written) {
+      copies_.emplace();
+      if (!copies_->problem().empty()) return copies_->problem();
+      std::error_code error;
+      for (const char* end : {"-wal", ""})
+        if (!error) std::filesystem::copy_file(path_ + end, Copy() + end, error);
+      if (error) return "it has a -wal beside it, and cannot be copied: " + error.message();
+    }
     std::string uri = "file:";
-    for (const char c : std::filesystem::absolute(path_).string())
+    for (const char c : is_written ? Copy() : std::filesystem::absolute(path_).string())
       uri += c == '?' || c == '#' || c == '%' ? fmt::format("%{:02x}", static_cast<int>(c))
                                               : std::string(1, c);
-    if (!std::filesystem::exists(path_ + "-wal")) uri += "?immutable=1";
+    if (!is_written) uri += "?immutable=1";
     sqlite3* database = nullptr;
     const int code =
         sqlite3_open_v2(uri.c_str(), &database, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
@@ -363,6 +374,8 @@ class Db3Reader {
   }
 
  private:
+  std::string Copy() const { return (copies_->path() / "copy").string(); }
+
   template <class Take>
   void Each(const std::string& sql, const Take& take) {
     sqlite3_stmt* prepared = nullptr;
@@ -424,6 +437,7 @@ class Db3Reader {
 
   LogFile& file_;
   const std::string& path_;
+  std::optional<TemporaryFolder> copies_;
   std::unique_ptr<sqlite3, CloseDatabase> database_;
   std::map<std::string, std::pair<std::string, std::string_view>> definitions_;  ///< by type
 };
