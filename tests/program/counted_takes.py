@@ -148,7 +148,9 @@ def count(takes):
             # Or up to 50 ms before it begins.
             inside = [f for f in found if f[2] == thing and f[0] - 5 <= at < f[1]]
             moments_found += bool(inside)
-            explained |= {f for f in inside if not any(t[2] == thing and overlap(t, f) > 0 for t in truth)}
+            # It excuses the nearest one.
+            excused = [f for f in inside if f not in explained and not any(t[2] == thing and overlap(t, f) > 0 for t in truth)]
+            explained |= {f for f in excused if f == min(excused, key=lambda f: (max(0, f[0] - at), f))}
         found = [f for f in found if f not in explained]
         free = [True] * len(truth)
         for f in found:

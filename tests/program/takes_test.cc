@@ -349,6 +349,12 @@ TEST_F(Takes, LabelsOfAMomentLieInEvents) {
   const auto extra = Json({take, "--truth", other, "--map", map_})["grammars"][0];
   EXPECT_EQ(extra["total"]["ward"]["inserted"], 1);
   EXPECT_EQ(extra["moments"]["near"]["found"], 0);
+  // It excuses one event, the nearest.
+  const std::string two = Write("t.csv", head + "1.48,1.51,near\n1.52,1.9,near\n3,4,near\n");
+  const auto both = Json({take, "--truth", Write("o.csv", head + "1.5,1.5,near\n3,4,near\n"),
+                          "--found", two, "--map", map_})["grammars"][0];
+  EXPECT_EQ(both["total"]["ward"]["inserted"], 1) << both;
+  EXPECT_EQ(both["moments"]["near"]["found"], 1);
   // Praat's points and BORIS's, too.
   const std::string boris =
       Write("b.csv", "Time,Behavior,Type\n1.2,near,POINT\n3,near,START\n4,near,STOP\n");

@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "grammar/base/diagnostic.h"
@@ -48,6 +50,8 @@ std::map<std::string, Moments> LabelReading::TakeMoments(std::size_t take,
     ++counted.marked;
     counted.labels.emplace_back(label.begin_s, label.event);
     bool is_found = false;
+    // One label excuses one event: the nearest that no other one excuses.
+    std::optional<std::pair<grammar::Tick, std::size_t>> nearest;
     for (std::size_t i = 0; i < found.events.size(); ++i) {
       const grammar::NamedEvent& event = found.events[i];
       if (at < event.interval.begin - before || at >= event.interval.end ||
@@ -58,8 +62,11 @@ std::map<std::string, Moments> LabelReading::TakeMoments(std::size_t take,
         return other.Label() == event.Label() && other.interval.begin < event.interval.end &&
                event.interval.begin < other.interval.end;
       });
-      if (!is_marked) explained.insert(i);
+      const std::pair candidate(std::max<grammar::Tick>(0, event.interval.begin - at), i);
+      if (!is_marked && !explained.contains(i) && (!nearest || candidate < *nearest))
+        nearest = candidate;
     }
+    if (nearest) explained.insert(nearest->second);
     counted.found += is_found ? 1 : 0;
   }
   for (auto at = explained.rbegin(); at != explained.rend(); ++at)
