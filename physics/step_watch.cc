@@ -113,17 +113,15 @@ void StepWatch::NoteFixed(std::vector<ScriptNote>& notes) const {
       const PartRange parts = PartsOfLimb(person, limb);
       follows_hand |= part >= parts.begin && part < parts.end && HandAt(limb, person) != kNone;
     }
-    notes.push_back(
-        {entered.tick, kNone,
-         scene_.body(person.head + part).name + (starts ? " starts " : " goes ") +
-             Millimetres(entered.deepest.depth_m) + (starts ? " in " : " into ") +
-             scene_.body(who.second).name + ", which is fixed" +
-             (entered.is_through ? ", and comes out on another side of it" : "") +
-             (starts ? "; let her start elsewhere"
-              : follows_hand
-                  ? "; lead its hand another way, or let her stand elsewhere"
-                  : "; walking, and a limb that moves, stop before it with 'max_force_n'; "
-                    "or lead her around it")});
+    notes.push_back({entered.tick, kNone,
+                     scene_.body(person.head + part).name + (starts ? " starts " : " goes ") +
+                         Millimetres(entered.deepest.depth_m) + (starts ? " in " : " into ") +
+                         scene_.body(who.second).name + ", which is fixed" +
+                         (entered.is_through ? ", and comes out on another side of it" : "") +
+                         (starts         ? "; let her start elsewhere"
+                          : follows_hand ? "; lead its hand another way, or let her stand elsewhere"
+                                         : "; walking, and a limb that moves, stop before it with "
+                                           "'max_force_n'; or lead her around it")});
   }
 }
 
@@ -140,8 +138,8 @@ void StepWatch::SeeJoints(const Snapshot& now) {
     const std::string remedy =
         TouchesJoint(scene_, leading.hand, leading.joint, now)
             ? "it touches " + name +
-                  ", which stays behind: close the hand around its handle, or "
-                  "take more time ('over_s')"
+                  ", which stays behind: close the hand around its handle, or take more time "
+                  "('over_s')"
             : "it does not touch " + name + ": reach for its handle and 'close_to: 1' first";
     notes_.push_back({now.tick, leading.hand,
                       "follow_joint: " + name + " is at " + PositionText(joint, position) +
@@ -205,11 +203,10 @@ std::vector<ScriptNote> StepWatch::Notes() const {
                          "it is out of reach: the arm of " + person.name + " ends " + away +
                              "it; let her stand nearer, walk, turn or lean"});
       else
-        notes.push_back({farthest.tick, kNone,
-                         person.name + ": move_limb: her " + NameOf(farthest.end) + " ends " +
-                             away +
-                             "its to_m, which is out of reach; let her stand nearer, walk, turn "
-                             "or lean"});
+        notes.push_back(
+            {farthest.tick, kNone,
+             person.name + ": move_limb: her " + NameOf(farthest.end) + " ends " + away +
+                 "its to_m, which is out of reach; let her stand nearer, walk, turn or lean"});
     }
   }
   for (const auto& [who, met] : met_) {

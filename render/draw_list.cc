@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bodies, hands, ghosts and markers as placed primitives.
-// Tested by tests/render/draw_list_test.cc
 #include "render/draw_list.h"
 
 #include <algorithm>

@@ -204,8 +204,7 @@ std::string PixelsText(const Image& golden, const Image& drawn) {
   char text[160];
   std::snprintf(
       text, sizeof text,
-      "%zu of its pixels differ (%.2g %%), at most %zu may; they lie between (%d, %d) and "
-      "(%d, %d)",
+      "%zu of its pixels differ (%.2g %%), at most %zu may; they lie between (%d, %d) and (%d, %d)",
       found.pixels, 300.0 * static_cast<double>(found.pixels) / golden.rgb.size(),
       kMaxDifferingPixels, found.left, found.top, found.right, found.bottom);
   return text;

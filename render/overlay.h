@@ -74,8 +74,7 @@ StripLayout LayOutStrip(const TimelineStrip& strip, const Font& font, int width_
 void DrawStrip(const StripLayout& layout, Canvas* canvas);
 
 // Names beside the objects of a picture, placed so that they overlap neither each other nor
-// important content.
-// Tested by tests/render/labels_test.cc
+// important content. Tested by tests/render/labels_test.cc
 
 struct LabelRequest {
   std::string text;

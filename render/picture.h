@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One picture as a value: what to draw, from which camera, with which labels and timeline. It knows
-// neither grammar nor simulation.
-// Tested by tests/render/painter_test.cc
+// neither grammar nor simulation. Tested by tests/render/painter_test.cc
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Layout of the strip: every row is distributed to lanes (first free lane), names are inside or
-// above their bars, ticks are at round seconds.
-// Tested by tests/render/timeline_strip_test.cc
+// above their bars, ticks are at round seconds. Tested by tests/render/timeline_strip_test.cc
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Camera and light matrices, and the named cameras.
-// Tested by tests/render/view_test.cc
+// Camera and light matrices, and the named cameras. Tested by tests/render/view_test.cc
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Grammar files -> Program: reads includes, collects parameters and heads, lowers every definition,
 // orders the rules so that each follows those it refers to, picks each rule's guard, and checks all
-// ids. Tested by tests/grammar/compile/compile_test.cc
+// ids.
 #include "grammar/compile/compile.h"
 
 #include <algorithm>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Conditions that are never or always true: comparisons that their ranges decide, chains of which
 // the parts exclude each other, and what follows for the whole clause. Errors and warnings: "this
-// is never true", "this is always true".
-// Tested by tests/grammar/compile/compile_test.cc
+// is never true", "this is always true". Tested by tests/grammar/compile/compile_test.cc
 #include <algorithm>
 #include <utility>
 

@@ -85,8 +85,7 @@ class DefinitionLowering {
     if (calls.empty()) {
       return lowering_.Complain(
           d_.place,
-          "'otherwise' is when no other event holds, and no other event of this file is "
-          "about " +
+          "'otherwise' is when no other event holds, and no other event of this file is about " +
               WithArticle(roles.front().class_name),
           "define such events, or say what must not hold: while not X");
     }
@@ -169,9 +168,9 @@ class DefinitionLowering {
                         .each = d_.each};
     CheckBegin();
     if (d_.each && d_.absence) {
-      lowering_.Complain(d_.place, "'each' is for what comes: from each A to B within t",
-                         "leave out 'each': some A has no answer only if from A without B within t "
-                         "finds one");
+      lowering_.Complain(
+          d_.place, "'each' is for what comes: from each A to B within t",
+          "leave out 'each': some A has no answer only if from A without B within t finds one");
     } else if (d_.each && !d_.within) {
       lowering_.Complain(d_.place, "without a limit, one B ends what each A began",
                          "say how long each may wait: from each A to B within 2 s");
@@ -390,9 +389,9 @@ class DefinitionLowering {
 
   void ShareOut(const ast::OnePer& one_per) {
     if (d_.form == Definition::Form::kWhile) return lowering_.LowerOnePer(one_per);
-    lowering_.Complain(one_per.place, "'one .. per' goes with 'while' only",
-                       "make this a condition, and share that out: while C(hand, object) one hand "
-                       "per object");
+    lowering_.Complain(
+        one_per.place, "'one .. per' goes with 'while' only",
+        "make this a condition, and share that out: while C(hand, object) one hand per object");
   }
 
   void CheckDrawn(const ast::Drawn& drawn) {

@@ -7,8 +7,7 @@
 // one that ends first, then the one that begins last. Algorithm: parts deliver their intervals; a
 // combination is judged as soon as no interval can still come that ends before it is complete. An
 // interval that nothing to come can complete is forgotten. More than kMostRememberedSpans end the
-// run: what is found never depends on memory.
-// Tested by tests/grammar/engine/compose_test.cc
+// run: what is found never depends on memory. Tested by tests/grammar/engine/compose_test.cc
 #include <algorithm>
 #include <optional>
 #include <string>

@@ -205,8 +205,7 @@ class Parser : public LawParser {
     } else {
       Fail(
           "expected 'while', 'from', 'until', 'rest', 'compose', 'all of', 'repeat' or "
-          "'otherwise', "
-          "found " +
+          "'otherwise', found " +
               Found(),
           WordHint(true));
     }

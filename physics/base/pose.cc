@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rotations that are costly to compile. Tested by tests/physics/base/pose_test.cc
+// Rotations that are costly to compile.
 #include "physics/base/pose.h"
 
 #include <algorithm>

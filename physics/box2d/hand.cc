@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One Box2D body per part of the hand; each link hangs on its parent by a revolute or a prismatic
-// joint with a motor. Tested by tests/physics/box2d/world_test.cc
+// joint with a motor.
 #include "physics/box2d/hand.h"
 
 #include <algorithm>

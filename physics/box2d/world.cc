@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Needs: Box2D 2.4.1. The order of creation matters for determinism: bodies first, then hands, in
-// scene order; one step per tick. Tested by tests/physics/box2d/world_test.cc
+// scene order; one step per tick.
 #include "physics/box2d/world.h"
 
 #include <algorithm>

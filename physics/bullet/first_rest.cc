@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/world/first_rest_test.cc
 #include "physics/bullet/first_rest.h"
 
 namespace prehend::physics {

@@ -30,8 +30,7 @@ class FirstRest {
   }
 
   /// Call after every step. After each watch, Bullet is told that the bodies that did not move in
-  /// it have rested for its two seconds; an island still falls asleep as a whole or not at
-  /// all.
+  /// it have rested for its two seconds; an island still falls asleep as a whole or not at all.
   ///
   /// To move is to be faster than the body's sleeping thresholds, scaled to the time: a constant
   /// acceleration from rest that passes a threshold within two seconds is seen here, too.

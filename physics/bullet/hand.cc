@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Palm, links, joint motors and joint limits as one btMultiBody. Tested by
-// tests/physics/world/world_test.cc
+// Palm, links, joint motors and joint limits as one btMultiBody.
 #include "physics/bullet/hand.h"
 
 #include <BulletDynamics/Featherstone/btMultiBodyJointLimitConstraint.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/hand/grip_test.cc
 #include "physics/hand/grip.h"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distances are exact for spheres against the shapes of physics/scene/geometry.h. Tested by
-// tests/physics/hand/reach_planner_test.cc
+// Distances are exact for spheres against the shapes of physics/scene/geometry.h.
 #include "physics/hand/hand_clearance.h"
 
 #include <algorithm>

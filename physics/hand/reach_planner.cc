@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Candidates are scored in radians: turns of the hand, and penalties for grips of last resort.
-// Tested by tests/physics/hand/reach_planner_test.cc
 #include "physics/hand/reach_planner.h"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One Resolver per step turns the step into a trajectory. Tested by
-// tests/physics/hand/script_player_test.cc
+// One Resolver per step turns the step into a trajectory.
 #include "physics/hand/script_player.h"
 
 #include <algorithm>

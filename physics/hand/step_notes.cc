@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/hand/script_player_test.cc
 #include "physics/hand/step_notes.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directions turn along great circles. Tested by tests/physics/motion/posture_test.cc
+// Directions turn along great circles.
 #include "physics/motion/posture.h"
 
 #include <algorithm>

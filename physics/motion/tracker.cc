@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Losses follow the two-state channel of Gilbert 1960. Tested by
-// tests/physics/motion/tracker_test.cc
+// Losses follow the two-state channel of Gilbert 1960.
 #include "physics/motion/tracker.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Segments are looked up by their end times. Tested by tests/physics/motion/trajectory_test.cc
+// Segments are looked up by their end times.
 #include "physics/motion/trajectory.h"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The head approaches the eyes' direction exponentially. Tested by
-// tests/physics/person/gaze_test.cc
+// The head approaches the eyes' direction exponentially.
 #include "physics/person/gaze.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Motions start at stages of the script; every tick turns them into body targets and these into
-// poses. Tested by tests/physics/person/person_player_test.cc
+// poses.
 #include "physics/person/person_player.h"
 
 #include <algorithm>
@@ -181,8 +181,7 @@ double PersonPlayer::ResistanceTo(int begin, int end, const Vector3d& way,
 void PersonPlayer::Yield(Yielding& motion, double resistance_n) const {
   // Resistance in the solver grows with speed, so the pace is divided by the excess. It then grows
   // back exponentially from where it was: a resistance that was met at a slow pace is met at a slow
-  // pace again.
-  // It begins again so slowly that what stays is not moved by all that she tries.
+  // pace again. It begins again so slowly that what stays is not moved by all that she tries.
   constexpr double kGrow_s = 0.1, kMinPace = 1e-5;
   const double dt_s = 1.0 / scene_.world.rate_hz;
   if (!motion.max_force_n) return;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arms and legs are solved in closed form: two bones and the law of cosines. Tested by
-// tests/physics/person/skeleton_test.cc
+// Arms and legs are solved in closed form: two bones and the law of cosines.
 #include "physics/person/skeleton.h"
 
 #include <algorithm>

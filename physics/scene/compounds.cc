@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Round walls are rings of boxes (staves). Tested by tests/physics/scene/compounds_test.cc
+// Round walls are rings of boxes (staves).
 #include "physics/scene/compounds.h"
 
 #include <cmath>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Flood fill of one lattice layer after the other. Tested by
-// tests/physics/scene/fill_vessel_test.cc
+// Flood fill of one lattice layer after the other.
 #include "physics/scene/fill_vessel.h"
 
 #include <deque>

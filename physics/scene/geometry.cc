@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One visitor per question over the kinds of shapes. Tested by tests/physics/scene/geometry_test.cc
+// One visitor per question over the kinds of shapes.
 #include "physics/scene/geometry.h"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Joint targets, forward kinematics, the mirror image and stable gains, from a hand model alone.
-// Tested by tests/physics/scene/hand_model_test.cc
 #include "physics/scene/hand_model.h"
 
 #include <Eigen/Eigenvalues>
@@ -123,8 +122,7 @@ std::string Diverges(const Inertia& inertia, const PidGains& gains, int rate_hz)
   if (gains.proportional >= most_proportional) {
     std::snprintf(text, sizeof text,
                   "the %s proportional gain %g cannot be stable: it overshoots more with every "
-                  "1/%d s; it must stay below "
-                  "%.4g here",
+                  "1/%d s; it must stay below %.4g here",
                   inertia.of, gains.proportional, rate_hz, most_proportional);
     return text;
   }
@@ -146,8 +144,7 @@ std::string TooStiff(const Inertia& inertia, const PidGains& gains, int rate_hz)
   char text[256];
   std::snprintf(text, sizeof text,
                 "the %s derivative gain %g cannot be stable: gain * dt / inertia = %g * (1/%d s) / "
-                "%.4g %s = %.2f, "
-                "which must stay below 1 (at most %.4g here)",
+                "%.4g %s = %.2f, which must stay below 1 (at most %.4g here)",
                 inertia.of, gains.derivative, gains.derivative, rate_hz, inertia.least,
                 inertia.unit, ratio, 0.99 * rate_hz * inertia.least);
   return text;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faces, then their outlines, then mass properties from tetrahedra. Tested by
-// tests/physics/scene/hull_test.cc
+// Faces, then their outlines, then mass properties from tetrahedra.
 #include "physics/scene/hull.h"
 
 #include <Eigen/Eigenvalues>

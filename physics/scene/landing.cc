@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The vertical distance of two convex solids is where the vertical through the origin meets the
 // lower side of their Minkowski difference. That is a linear program whose columns are pairs of
-// points of the solids; the simplex method generates them by need (Dantzig & Wolfe 1960). Tested by
-// tests/physics/scene/landing_test.cc
+// points of the solids; the simplex method generates them by need (Dantzig & Wolfe 1960).
 #include "physics/scene/landing.h"
 
 #include <algorithm>

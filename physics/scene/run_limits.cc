@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Limits of speed, distance and penetration depth, and the advice for each. Tested by
-// tests/physics/scene/run_limits_test.cc
+// Limits of speed, distance and penetration depth, and the advice for each.
 #include "physics/scene/run_limits.h"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The effective inertia of the joint's free axis, by a Cholesky decomposition of order six. Tested
-// by tests/physics/world/joint_spring_test.cc
+// The effective inertia of the joint's free axis, by a Cholesky decomposition of order six.
 #include "physics/world/joint_spring.h"
 
 #include <Eigen/Cholesky>

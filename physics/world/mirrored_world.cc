@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Commands are mirrored on their way in, states on their way out; what rests is not mirrored again.
-// Tested by tests/physics/world/mirrored_world_test.cc
 #include "physics/world/mirrored_world.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Defaults for engines without persons. Tested by tests/physics/world/world_test.cc
+// Defaults for engines without persons.
 #include "physics/world/world.h"
 
 namespace prehend::physics {

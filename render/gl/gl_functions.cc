@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Looks up the function table.
-// Tested by tests/render/painter_test.cc
 #include "render/gl/gl_functions.h"
 
 namespace prehend::render {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The OpenGL functions that render/ uses, as a table that is passed around: no loader library, no
-// globals, no dependency on the system's libGL.
-// Tested by tests/render/painter_test.cc
+// globals, no dependency on the system's libGL. Tested by tests/render/painter_test.cc
 #pragma once
 
 #include <GL/glcorearb.h>

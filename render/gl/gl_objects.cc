@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Programs, meshes and framebuffers.
-// Tested by tests/render/painter_test.cc
 #include "render/gl/gl_objects.h"
 
 #include <Eigen/Geometry>

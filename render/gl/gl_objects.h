@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Owners of OpenGL objects: programs, meshes on the GPU, and framebuffers. Their context must be
-// current whenever they are used, also on destruction.
-// Tested by tests/render/painter_test.cc
+// current whenever they are used, also on destruction. Tested by tests/render/painter_test.cc
 #pragma once
 
 #include <Eigen/Core>

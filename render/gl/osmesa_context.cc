@@ -3,7 +3,6 @@
 // it needs, it takes most of the time in which the program starts, and most of its address space.
 // osmesa.h includes the system's gl.h, which conflicts with the core profile header; defining
 // gl.h's include guard avoids that.
-// Tested by tests/render/painter_test.cc
 #include "render/gl/osmesa_context.h"
 
 #include <GL/glcorearb.h>

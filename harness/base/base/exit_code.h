@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the program ends. Scripts rely on these numbers. Tested by
-// tests/program/command_line_test.cc
+// How the program ends. Scripts rely on these numbers. Tested by tests/program/command_line_test.cc
 #pragma once
 
 #include <string_view>

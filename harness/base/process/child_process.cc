@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/base/process/child_process_test.cc
 #include "harness/base/process/child_process.h"
 
 #include <fcntl.h>

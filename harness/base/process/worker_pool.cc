@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One fork and one pipe per job. The parent polls the pipes and kills a child that is late. A job
-// has ended when its pipe has. Tested by tests/harness/base/process/worker_pool_test.cc
+// has ended when its pipe has.
 #include "harness/base/process/worker_pool.h"
 
 #include <fcntl.h>

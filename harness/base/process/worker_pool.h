@@ -62,8 +62,7 @@ struct LimitedEnd {
 
 /// Runs one job in a process of its own that writes to this one's standard output and error. What
 /// it throws is thrown again, as std::runtime_error. `time_limit_s` 0: none; `jobs` does not
-/// matter. It dies with this process.
-/// When `interrupt` comes, the job is killed.
+/// matter. It dies with this process. When `interrupt` comes, the job is killed.
 LimitedEnd RunWithinLimits(const std::function<int()>& job, const WorkerLimits& limits,
                            Interrupt* interrupt = nullptr);
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/base/yaml/struct_format_test.cc
 #include "harness/base/yaml/diagnostic_list.h"
 
 #include <fmt/format.h>

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/base/yaml/located_yaml_test.cc
 //
-// Needs: yaml-cpp's event interface (YAML::Parser, YAML::EventHandler).
-// Assumptions about yaml-cpp 0.7: marks count bytes from 0; the mark of a node with a tag or anchor
-// is that of the tag or anchor; the mark of an absent value is that of the next token;
-// OnSequenceStart and OnMapStart come before the parser recurses, so throwing there bounds its
-// stack.
+// Needs: yaml-cpp's event interface (YAML::Parser, YAML::EventHandler). Assumptions about yaml-cpp
+// 0.7: marks count bytes from 0; the mark of a node with a tag or anchor is that of the tag or
+// anchor; the mark of an absent value is that of the next token; OnSequenceStart and OnMapStart
+// come before the parser recurses, so throwing there bounds its stack.
 #include "harness/base/yaml/located_yaml.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/base/yaml/yaml_scalar_test.cc
 #include "harness/base/yaml/yaml_scalar.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What commands share. Tested by tests/program/command_line_test.cc
+// What commands share.
 #include "harness/cli/command/command.h"
 
 #include <fmt/format.h>

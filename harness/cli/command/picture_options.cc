@@ -34,8 +34,8 @@ std::vector<Option> PartOptions() {
       Value("--from", "S", "begin of the part whose events, paths and ghosts are shown, seconds",
             NumbersFrom(0, 1e6)),
       Value("--to", "S",
-            "end of that part; default: all, but paths and ghosts of an episode of "
-            "more than 15 s only around the moment",
+            "end of that part; default: all, but paths and ghosts of an episode of more than 15 s "
+            "only around the moment",
             NumbersFrom(0, 1e6)),
       Value("--hand", "HAND", "paths, ghosts and rows of this hand only"),
       Value("--of", "NAME", "the path of this thing, and only events that it takes part in")};
@@ -43,26 +43,25 @@ std::vector<Option> PartOptions() {
 
 std::vector<Option> LookOptions() {
   return {Value("--camera", "CAMERA",
-                "from where: front, left, right, top, three_quarter; hand, action or "
-                "body, which are nearer to what they name; a camera of the scenario; "
-                "or X,Y,Z:X,Y,Z[:DEG], a place, what it looks at, and the view's height"),
+                "from where: front, left, right, top, three_quarter; hand, action or body, which "
+                "are nearer to what they name; a camera of the scenario; or X,Y,Z:X,Y,Z[:DEG], a "
+                "place, what it looks at, and the view's height"),
           Value("--text", "SCALE", "scale of all text; default: 1", NumbersFrom(0.3, 5)),
           Value("--look", "LOOK,..",
                 "print: on white paper; transparent: without a ground, for slides and posters; "
-                "regions: with the regions of interest of what hands do at the moment, and a "
-                "star above each thing that a hand may be reaching for",
+                "regions: with the regions of interest of what hands do at the moment, and a star "
+                "above each thing that a hand may be reaching for",
                 SomeOf({"print", "transparent", "regions"}))};
 }
 
 Option WidthOption() {
-  return Value("--width", "MM",
-               "width on paper, such as 89mm; texts have 7 pt there (times --text), PNG 600 dots "
-               "per inch",
-               {"30mm to 500mm", [](const std::string& value) {
-                  return Millimetres(value)
-                             ? ""
-                             : "expected a width like 89mm, 30 to 500, found '" + value + "'";
-                }});
+  return Value(
+      "--width", "MM",
+      "width on paper, such as 89mm; texts have 7 pt there (times --text), PNG 600 dots per inch",
+      {"30mm to 500mm", [](const std::string& value) {
+         return Millimetres(value) ? ""
+                                   : "expected a width like 89mm, 30 to 500, found '" + value + "'";
+       }});
 }
 
 double PixelsOf(const ParsedOptions& options) {

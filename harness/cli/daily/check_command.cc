@@ -38,22 +38,20 @@ ValueRule AnySeed() {
 }
 
 std::vector<Option> SelectionOptions() {
-  return InGroup(
-      "Which scenarios",
-      {
-          Repeatable(Argument(
-              "names",
-              "names, skill/name, globs or files, also episode files and recordings of trackers; "
-              "default: all scenarios")),
-          FilterOption(),
-          Value("--shard", "I/N[:COSTS.json]",
-                "keep part I of N: of as many scenarios, or, with the costs.json that a check "
-                "left in build/check, of as many seconds",
-                {.problem = suite::ShardProblem}),
-          Flag("--changed",
-               "skip scenarios that passed, if no file and no part of the program that "
-               "they depend on changed since"),
-      });
+  return InGroup("Which scenarios",
+                 {
+                     Repeatable(Argument("names",
+                                         "names, skill/name, globs or files, also episode files "
+                                         "and recordings of trackers; default: all scenarios")),
+                     FilterOption(),
+                     Value("--shard", "I/N[:COSTS.json]",
+                           "keep part I of N: of as many scenarios, or, with the costs.json that a "
+                           "check left in build/check, of as many seconds",
+                           {.problem = suite::ShardProblem}),
+                     Flag("--changed",
+                          "skip scenarios that passed, if no file and no part of the program that "
+                          "they depend on changed since"),
+                 });
 }
 
 std::vector<Option> RunningOptions() {
@@ -64,8 +62,8 @@ std::vector<Option> RunningOptions() {
           TimeLimitOption(0.1, 86400),
           MemoryLimitOption(),
           Value("--repeat", "N",
-                "run each scenario N times; a scenario whose results or state hashes "
-                "differ is flaky and fails",
+                "run each scenario N times; a scenario whose results or state hashes differ is "
+                "flaky and fails",
                 IntegersFrom(1, kMaxRepeats)),
           Value("--shuffle", "SEED",
                 "run in a random order with this seed; default: the slowest first", AnySeed()),
@@ -92,8 +90,8 @@ std::vector<Option> ResultOptions() {
       {
           WritesFile(
               Value("--report", "DIR",
-                    "folder for index.html and pictures; default: build/report of the project, "
-                    "or, outside of it, of this folder; build/report/some of some scenarios")),
+                    "folder for index.html and pictures; default: build/report of the project, or, "
+                    "outside of it, of this folder; build/report/some of some scenarios")),
           WritesFile(Value("--junit", "FILE",
                            "also write the verdicts as JUnit XML; -: print it instead of text")),
           WritesFile(Value("--record", "FILE",
@@ -101,8 +99,7 @@ std::vector<Option> ResultOptions() {
                            {.range = {}, .problem = RecordProblem})),
           Flag("--no-pictures", "draw no pictures"),
           Value("--replay", "WHICH",
-                "of which scenarios the page has a 3D replay: failures (the default), "
-                "all, none",
+                "of which scenarios the page has a 3D replay: failures (the default), all, none",
                 OneOf({"failures", "all", "none"})),
           Flag("--verbose", "print the details of every failure, also of more than ten"),
           JsonOption(),

@@ -89,9 +89,9 @@ ExitCode ImportLines(const std::string& file, const ParsedOptions& options,
   const std::string& output = options.Text("--output");
   for (const char* option : {"--map", "--propose"})
     if (options.Has(option))
-      return Refuse(context, fmt::format("{} is for poses; {} is a recording, which says what it "
-                                         "means",
-                                         option, file));
+      return Refuse(context,
+                    fmt::format("{} is for poses; {} is a recording, which says what it means",
+                                option, file));
   if (!options.Has("--check") && !episode::IsEpisodeFile(output))
     return Refuse(context,
                   file + " is a recording already; -o NAME.episodes keeps it as an episode");
@@ -342,17 +342,16 @@ Command ImportCommand() {
                    "import poses.csv --map bodies.yaml -o take.jsonl",
                    "episode resegment take.jsonl", "import take.jsonl -o takes.episodes"},
       .options =
-          {Repeatable(Required(
-               Argument("poses",
-                        "files with poses of hands and things: CSV, BVH, MCAP, a bag, HDF5, "
-                        "JSON, .npz or C3D (docs/motion-capture.md), folders of them, or a "
-                        "recording (docs/recording-format.md)"))),
+          {Repeatable(
+               Required(Argument("poses",
+                                 "files with poses of hands and things: CSV, BVH, MCAP, a bag, "
+                                 "HDF5, JSON, .npz or C3D (docs/motion-capture.md), folders of "
+                                 "them, or a recording (docs/recording-format.md)"))),
            Value("--map", "MAP.yaml",
                  "of poses, what the file means: unit, axes, times, columns, bodies"),
-           OutputOption(
-               "the recording (docs/recording-format.md), -: standard output; or an episode "
-               "file, NAME.episodes, to which it is added (docs/episodes.md); of several "
-               "takes a folder; of --propose the map"),
+           OutputOption("the recording (docs/recording-format.md), -: standard output; or an "
+                        "episode file, NAME.episodes, to which it is added (docs/episodes.md); of "
+                        "several takes a folder; of --propose the map"),
            Flag("--propose", "write a first map for the file, in which sizes are to be filled in"),
            Flag("--check", "write nothing; show what the file has, and what a grammar will miss"),
            Value("--grammar", "GRAMMAR", "the grammar to look with; default: that of the map")},

@@ -123,13 +123,12 @@ tl::expected<TypedName, ExitCode> ReadName(const std::string& typed,
       (slash == typed.npos || episode::IsScenarioName(words.skill)))
     return words;
   const std::string fitting = slash == typed.npos ? AsName(words.name) : "";
-  return tl::unexpected(Refuse(
-      context,
-      "'" + typed +
-          "' is not a scenario name; wanted a small letter, then small letters, digits and '_', at "
-          "most 64 in all, like " +
-          (fitting.empty() ? "slide_then_transport" : fitting) +
-          "; a folder may precede it, like slide/slide_then_transport"));
+  return tl::unexpected(
+      Refuse(context, "'" + typed +
+                          "' is not a scenario name; wanted a small letter, then small letters, "
+                          "digits and '_', at most 64 in all, like " +
+                          (fitting.empty() ? "slide_then_transport" : fitting) +
+                          "; a folder may precede it, like slide/slide_then_transport"));
 }
 
 /// What the new scenario starts from: another one, or a template by its name.
@@ -204,8 +203,8 @@ ExitCode RunNew(const ParsedOptions& options, const CommandContext& context) {
   }
   if (!options.Has("name"))
     return Refuse(context,
-                  "the name of the scenario is missing, like 'new cup_is_lifted'; for a project "
-                  "of your own: --project DIR");
+                  "the name of the scenario is missing, like 'new cup_is_lifted'; for a project of "
+                  "your own: --project DIR");
   PREHEND_TRY(const auto typed, ReadName(options.Text("name"), context));
   const std::string& name = typed.name;
   PREHEND_TRY(const auto model, ModelFor(name, options, context));
@@ -243,10 +242,10 @@ Command NewCommand() {
                    "new slide/carton_slides_far --like carton_slides_then_is_transported",
                    "new --project my_kitchen"},
       .options =
-          {Argument("name",
-                    "what the scenario claims, like bottle_is_shaken; or skill/name. The verb "
-                    "and the thing are taken from it. In a folder of no project the file is "
-                    "written there"),
+          {Argument(
+               "name",
+               "what the scenario claims, like bottle_is_shaken; or skill/name. The verb and the "
+               "thing are taken from it. In a folder of no project the file is written there"),
            Value("--like", "SCENARIO|VERB",
                  fmt::format(
                      "start from this scenario; or what happens, if the name does not say so: {}",

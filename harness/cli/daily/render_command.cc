@@ -108,8 +108,7 @@ std::string WhyNoSheet(const ParsedOptions& options, std::size_t pictures) {
       rows * format.height_px <= kMostSheetSide_px)
     return "";
   return fmt::format(
-      "--sheet: {} x {} pixels are too many, at most {} per side; choose a smaller "
-      "--size",
+      "--sheet: {} x {} pixels are too many, at most {} per side; choose a smaller --size",
       columns * format.width_px, rows * format.height_px, kMostSheetSide_px);
 }
 
@@ -344,8 +343,8 @@ std::string WhyNoOutput(const ParsedOptions& options) {
     why = show::WhyNoDrawingFile(output);
   else if (output.ends_with(".svg") || output.ends_with(".pdf"))
     why = fmt::format(
-        "found '{}', wanted a file NAME.png; scenes are drawn in pixels, --strip is "
-        "the timeline alone",
+        "found '{}', wanted a file NAME.png; scenes are drawn in pixels, --strip is the timeline "
+        "alone",
         output);
   if (why.empty()) why = AtomicFile(output).problem();
   // A picture is a PNG, whatever its file is called.
@@ -368,13 +367,12 @@ std::vector<Option> OptionsInsteadOfPictures() {
       "Instead of pictures",
       {Flag("--strip", "the timeline alone"),
        Value("--against", "golden|pictures|GRAMMAR|ENGINE|CMD",
-             "compare with the golden, another grammar, the other engine "
-             "(bullet, box2d), a recogniser (docs/recognisers.md): both "
-             "timelines, and the scenes at each boundary that differs. "
-             "'pictures': golden pictures, those of now, and what differs"),
+             "compare with the golden, another grammar, the other engine (bullet, box2d), a "
+             "recogniser (docs/recognisers.md): both timelines, and the scenes at each boundary "
+             "that differs. 'pictures': golden pictures, those of now, and what differs"),
        WritesFile(Value("--film", "FILE|FOLDER",
-                        "a film: NAME.webp (img2webp), NAME.mp4 (ffmpeg), or a folder "
-                        "of frames; 960x540 unless --size says otherwise")),
+                        "a film: NAME.webp (img2webp), NAME.mp4 (ffmpeg), or a folder of frames; "
+                        "960x540 unless --size says otherwise")),
        Value("--fps", "N", "frames in a second of the film; default: 30", NumbersFrom(1, 120)),
        Value("--speed", "N", "seconds of the episode in a second of the film; default: 1",
              NumbersFrom(0.01, 100))});
@@ -399,8 +397,8 @@ Command RenderCommand() {
                   OutputOption("the PNG file; default: build/pictures/SKILL/NAME.png. --strip, "
                                "--sheet and --against also write .svg and .pdf"),
                   Value("--at", "TIME",
-                        "when: EVENT.begin, EVENT.end, or seconds; for a sheet several, "
-                        "with commas between them"),
+                        "when: EVENT.begin, EVENT.end, or seconds; for a sheet several, with "
+                        "commas between them"),
                   Value("--sheet", "N",
                         "all pictures in one file, with so many columns, above one timeline",
                         IntegersFrom(1, kMostColumns))},

@@ -199,30 +199,27 @@ Command ScoreCommand() {
           {Repeatable(
                Argument("names", "names, skill/name, globs or files; default: all scenarios")),
            FilterOption(),
-           Repeatable(Value("--grammar", "NAME|FILE",
-                            "a grammar to score; may be repeated; default: pick_and_place and "
-                            "original_2020 (with --set the first alone); with --truth that of the "
-                            "recordings")),
+           Repeatable(Value(
+               "--grammar", "NAME|FILE",
+               "a grammar to score; may be repeated; default: pick_and_place and original_2020 "
+               "(with --set the first alone); with --truth that of the recordings")),
            ParametersOption(), EpisodesOption(),
            Repeatable(Value("--event", "NAME,..",
                             "score only these events; default: all that docs/events.md defines")),
            Flag("--verbose",
-                "list every event that differs from what an evaluator says, or "
-                "from the labels"),
-           Repeatable(
-               Value("--found", "FILE|FOLDER",
-                     "score these events, too, which somebody else found: a folder with a file "
-                     "for each episode (.csv, .eaf, .TextGrid, .timeline, .jsonl, .txt), or one "
-                     "table with a column 'episode' (docs/recognisers.md)")),
+                "list every event that differs from what an evaluator says, or from the labels"),
+           Repeatable(Value("--found", "FILE|FOLDER",
+                            "score these events, too, which somebody else found: a folder with a "
+                            "file for each episode (.csv, .eaf, .TextGrid, .timeline, .jsonl, "
+                            ".txt), or one table with a column 'episode' (docs/recognisers.md)")),
            Repeatable(Value("--recogniser", "CMD",
                             "score a program that reads frames and prints events "
                             "(docs/recognisers.md), a grammar, or files:FOLDER; may be repeated")),
            PaceOption(), RecogniserLimitOption(), JsonOption()},
-          TruthOptions(
-              "labels by people (.csv, .eaf, .TextGrid) of the recordings or episode files "
-              "that are named: one file for each, one table of all, or a folder "
-              "(docs/labels.md); may be repeated",
-              "FILE|FOLDER")),
+          TruthOptions("labels by people (.csv, .eaf, .TextGrid) of the recordings or episode "
+                       "files that are named: one file for each, one table of all, or a folder "
+                       "(docs/labels.md); may be repeated",
+                       "FILE|FOLDER")),
       .run = RunScore};
 }
 

@@ -305,8 +305,7 @@ Command ResegmentCommand() {
                    "episode resegment milk.jsonl --set lift_rise=10cm",
                    "episode resegment monday.episodes tuesday.episodes --against recorded",
                    "episode resegment suite.episodes --episode 'slide/*' --set slide_speed=3cm/s"},
-      .options = {EpisodesArgument(),
-                  EpisodesOption(),
+      .options = {EpisodesArgument(), EpisodesOption(),
                   Value("--against", "recorded",
                         "print only how the events differ from those that were recognised when "
                         "the episode was recorded",

@@ -125,10 +125,7 @@ Command CoverageCommand() {
           .summary = "What episodes show of a grammar: rules, clauses, both sides of thresholds",
           .examples = {"grammar coverage suite.episodes --grammar my/rules.grammar",
                        "grammar coverage take1.jsonl take2.jsonl --within 10 -o coverage.info"},
-          .options = {EpisodesArgument(),
-                      GrammarOption(),
-                      EpisodesOption(),
-                      JobsOption(),
+          .options = {EpisodesArgument(), GrammarOption(), EpisodesOption(), JobsOption(),
                       Value("--within", "PERCENT",
                             "exit code 1 if more than so many percent of the clauses never "
                             "decided both ways",

@@ -342,8 +342,8 @@ Command QueryCommand() {
       .options =
           {EpisodesArgument(), Value("--event", "NAME", "its name, or a glob"),
            RoleOption("--role",
-                      "who or what has a role: an entity, or what is of this class, "
-                      "directly or not (of any role: any=NAME)",
+                      "who or what has a role: an entity, or what is of this class, directly or "
+                      "not (of any role: any=NAME)",
                       "ROLE=NAME"),
            RoleOption("--part-of", "of what it is a part, directly or not: an entity or a class",
                       "ROLE=NAME"),
@@ -352,20 +352,19 @@ Command QueryCommand() {
                  {.problem = LastsProblem}),
            SecondsOption("--from", "it begins at this time of its episode or later"),
            SecondsOption("--to", "it ends at this time of its episode or earlier"),
-           Repeatable(Value("--relation", "'RELATION EVENT'",
-                            "how it lies to another event of its episode, in Allen's words "
-                            "(before, meets, overlaps, starts, inside, finishes, equals, ..), or "
-                            "'has EVENT': it has a part of this name (see --parts); may be "
-                            "repeated",
-                            {.problem = RelationProblem})),
+           Repeatable(
+               Value("--relation", "'RELATION EVENT'",
+                     "how it lies to another event of its episode, in Allen's words (before, "
+                     "meets, overlaps, starts, inside, finishes, equals, ..), or 'has EVENT': it "
+                     "has a part of this name (see --parts); may be repeated",
+                     {.problem = RelationProblem})),
            EpisodesOption(),
            Flag("--parts",
-                "below each event also its parts: those that begin within it and have "
-                "no other participants"),
+                "below each event also its parts: those that begin within it and have no other "
+                "participants"),
            Value("--count-by", "COLUMN,..",
-                 "instead of the answers how many have the same in these columns: event, "
-                 "scenario, episode, file, a role (style, object), a role's class "
-                 "(object_class)"),
+                 "instead of the answers how many have the same in these columns: event, scenario, "
+                 "episode, file, a role (style, object), a role's class (object_class)"),
            WritesFile(Value("--show", "FOLDER",
                             "draw each answer into this folder: the world when the event begins, "
                             "with the paths of its hand and its thing until it ends")),

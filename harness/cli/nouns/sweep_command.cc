@@ -154,12 +154,10 @@ std::vector<Option> SweepOptions(const std::vector<Option>& own) {
                                  EpisodesOption(), JobsOption()};
   options = Joined(
       options,
-      TruthOptions(
-          "what the events are compared with: golden (default), oracle, recorded (the events of "
-          "the "
-          "recording), or labels by people: one file for each recording (.csv, .eaf, .TextGrid, "
-          ".timeline) or a folder (docs/labels.md)",
-          "golden|oracle|recorded|FILE|FOLDER"));
+      TruthOptions("what the events are compared with: golden (default), oracle, recorded (the "
+                   "events of the recording), or labels by people: one file for each recording "
+                   "(.csv, .eaf, .TextGrid, .timeline) or a folder (docs/labels.md)",
+                   "golden|oracle|recorded|FILE|FOLDER"));
   return Joined(options, own);
 }
 
@@ -174,8 +172,8 @@ Command MarginsCommand() {
       .name = "grammar margins",
       .summary = "How far each parameter of a grammar may be from its value",
       .examples = {"grammar margins suite.episodes --truth oracle --grammar my/rules.grammar",
-                   "grammar margins take1.jsonl take2.jsonl --truth labels --map labels.yaml "
-                   "-o margins.csv"},
+                   "grammar margins take1.jsonl take2.jsonl --truth labels --map labels.yaml -o "
+                   "margins.csv"},
       .options = SweepOptions(
           {Repeatable(
                Value("--over", "NAME", "try this parameter instead of all; may be repeated")),
@@ -203,8 +201,8 @@ Command SweepCommand() {
                "--over", "NAME=FROM..TO:COUNT",
                "try so many values of this parameter, evenly spaced; repeated: all combinations",
                {.range = {}, .problem = AxisProblem})),
-           WithinOption("the robust settings: their F1 is within so many percent of the best; "
-                        "default: 0.5"),
+           WithinOption(
+               "the robust settings: their F1 is within so many percent of the best; default: 0.5"),
            std::move(output)}),
       .run = RunSweep};
 }

@@ -123,8 +123,7 @@ grammar::Diagnostics WhyNotOneGrammar(std::span<const EpisodeName> episodes,
 Result<Episode> OpenEpisode(const EpisodeName& name, const GrammarChoice& choice,
                             const std::string& root, std::vector<std::string>* files = nullptr);
 
-// Many episodes, segmented again on all cores. Tested by
-// tests/program/episodes_test.cc
+// Many episodes, segmented again on all cores. Tested by tests/program/episodes_test.cc
 
 struct ResegmentRequest {
   std::string root;

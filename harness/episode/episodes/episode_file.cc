@@ -18,8 +18,8 @@ std::string About(const EpisodeRow& episode) {
 }
 
 constexpr const char* kFindPart =
-    "SELECT data FROM part WHERE episode = ? AND part = ? AND first_tick BETWEEN ? AND ?"
-    " ORDER BY first_tick DESC LIMIT 1";
+    "SELECT data FROM part WHERE episode = ? AND part = ? AND first_tick BETWEEN ? AND ? ORDER BY "
+    "first_tick DESC LIMIT 1";
 
 /// Damage that is found meanwhile is of these frames.
 template <typename Work>
@@ -64,11 +64,11 @@ Result<EpisodeFile> EpisodeFile::Open(const std::string& path) {
   return Guarded(path, [&] {
     EpisodeFile file(path, OpenToRead(path));
     Statement find = file.database_.Prepare(
-        "SELECT episode.id, episode.uuid, scenario, status, grammar, ticks_per_second,"
-        " CASE status WHEN 'recording' THEN coalesce((SELECT max(last_tick) FROM chunk WHERE"
-        " chunk.episode = episode.id), 0) ELSE ticks END, state_hash, outcome, recorded_on,"
-        " failure_entity, failure_reason, failure_advice, engine"
-        " FROM episode LEFT JOIN task ON task.id = episode.task ORDER BY episode.id");
+        "SELECT episode.id, episode.uuid, scenario, status, grammar, ticks_per_second, CASE status "
+        "WHEN 'recording' THEN coalesce((SELECT max(last_tick) FROM chunk WHERE chunk.episode = "
+        "episode.id), 0) ELSE ticks END, state_hash, outcome, recorded_on, failure_entity, "
+        "failure_reason, failure_advice, engine FROM episode LEFT JOIN task ON task.id = "
+        "episode.task ORDER BY episode.id");
     while (find.Step()) {
       if (find.IsNothing(2)) throw Damage("an episode has no task");
       EpisodeRow& row = file.episodes_.emplace_back();
@@ -93,8 +93,8 @@ Result<TaskFiles> EpisodeFile::TaskOf(const EpisodeRow& episode) const {
   const auto read = [&] {
     TaskFiles task;
     Statement find = database_.Prepare(
-        "SELECT file, asked_grammar, settings, task.id FROM task JOIN episode ON"
-        " episode.task = task.id WHERE episode.id = ?");
+        "SELECT file, asked_grammar, settings, task.id FROM task JOIN episode ON episode.task = "
+        "task.id WHERE episode.id = ?");
     if (!find.Bind(episode.id).Step()) throw Damage("an episode has no task");
     task.run.scenario_file = find.Text(0);
     task.run.grammar = find.Text(1);
@@ -105,8 +105,7 @@ Result<TaskFiles> EpisodeFile::TaskOf(const EpisodeRow& episode) const {
       if (setting.is_string()) task.run.settings.push_back(setting);
     }
     Statement assets = database_.Prepare(
-        "SELECT path, hash, content, bytes FROM task_asset JOIN asset USING(hash) WHERE task = "
-        "?");
+        "SELECT path, hash, content, bytes FROM task_asset JOIN asset USING(hash) WHERE task = ?");
     assets.Bind(id);
     Compressor compressor;
     std::size_t all = 0;
@@ -126,8 +125,8 @@ Result<TaskFiles> EpisodeFile::TaskOf(const EpisodeRow& episode) const {
 Result<KeptTask> EpisodeFile::DescribeTaskOf(const EpisodeRow& episode) const {
   return Guarded(path_, [&] {
     Statement find = database_.Prepare(
-        "SELECT task.uuid, shows, task.id FROM task JOIN episode ON episode.task = task.id"
-        " WHERE episode.id = ?");
+        "SELECT task.uuid, shows, task.id FROM task JOIN episode ON episode.task = task.id WHERE "
+        "episode.id = ?");
     if (!find.Bind(episode.id).Step()) throw Damage("an episode has no task");
     KeptTask task{.uuid = find.Uuid(0), .shows = find.Text(1)};
     Statement assets =
@@ -142,12 +141,12 @@ Result<grammar::Timeline> EpisodeFile::TimelineOf(const EpisodeRow& episode) con
   return Guarded(path_, [&] {
     grammar::Timeline timeline{.ticks_per_second = episode.ticks_per_second};
     Statement find = database_.Prepare(
-        "SELECT id, event, begin_tick, end_tick, decided_tick, open_end FROM event"
-        " WHERE episode = ? ORDER BY id");
+        "SELECT id, event, begin_tick, end_tick, decided_tick, open_end FROM event WHERE episode = "
+        "? ORDER BY id");
     // Their rows lie in the same order, each read once.
     constexpr const char* kTheirs =
-        " WHERE event BETWEEN (SELECT min(id) FROM event WHERE episode = ?1) AND"
-        " (SELECT max(id) FROM event WHERE episode = ?1) ORDER BY event, position";
+        " WHERE event BETWEEN (SELECT min(id) FROM event WHERE episode = ?1) AND (SELECT max(id) "
+        "FROM event WHERE episode = ?1) ORDER BY event, position";
     Statement roles =
         database_.Prepare(std::string("SELECT event, role, value FROM event_role") + kTheirs);
     Statement values = database_.Prepare(
@@ -181,11 +180,10 @@ Result<std::vector<KeptEntity>> EpisodeFile::EntitiesOf(const EpisodeRow& episod
   return Guarded(path_, [&] {
     std::vector<KeptEntity> entities;
     Statement find = database_.Prepare(
-        "SELECT entity.number, name, coalesce(part_of, -1), entity_class.class, entity.uuid,"
-        " coalesce(mass_kg, 0), size_x_m, size_y_m, size_z_m"
-        " FROM episode JOIN entity USING(task) JOIN entity_class ON"
-        " entity_class.task = entity.task AND entity_class.number = entity.number"
-        " WHERE episode.id = ? ORDER BY entity.number, depth");
+        "SELECT entity.number, name, coalesce(part_of, -1), entity_class.class, entity.uuid, "
+        "coalesce(mass_kg, 0), size_x_m, size_y_m, size_z_m FROM episode JOIN entity USING(task) "
+        "JOIN entity_class ON entity_class.task = entity.task AND entity_class.number = "
+        "entity.number WHERE episode.id = ? ORDER BY entity.number, depth");
     find.Bind(episode.id);
     while (find.Step()) {
       const std::int64_t number = find.Integer(0);
@@ -220,9 +218,9 @@ Result<void> EpisodeFile::EachPart(const EpisodeRow& episode, std::size_t part,
                                    const std::function<void(const ChunkOfPart&)>& look) const {
   const auto each = [&] {
     Statement find = database_.Prepare(
-        "SELECT chunk.first_tick, frames, data FROM chunk LEFT JOIN part ON"
-        " part.episode = chunk.episode AND part = ? AND part.first_tick = chunk.first_tick"
-        " WHERE chunk.episode = ? ORDER BY chunk.first_tick");
+        "SELECT chunk.first_tick, frames, data FROM chunk LEFT JOIN part ON part.episode = "
+        "chunk.episode AND part = ? AND part.first_tick = chunk.first_tick WHERE chunk.episode = ? "
+        "ORDER BY chunk.first_tick");
     find.Bind(static_cast<std::int64_t>(part)).Bind(episode.id);
     while (find.Step()) {
       ChunkOfPart chunk{.first_tick = find.Integer(0),
@@ -274,8 +272,8 @@ Result<void> EpisodeFrames::Play(const std::function<void(const physics::Snapsho
 Result<physics::Snapshot> EpisodeFrames::At(std::int64_t tick) {
   const auto find = [&] {
     Statement chunk = file_.database_.Prepare(
-        "SELECT first_tick, frames FROM chunk WHERE episode = ? AND first_tick <= ?"
-        " ORDER BY first_tick DESC LIMIT 1");
+        "SELECT first_tick, frames FROM chunk WHERE episode = ? AND first_tick <= ? ORDER BY "
+        "first_tick DESC LIMIT 1");
     if (!chunk.Bind(episode_.id).Bind(tick).Step())
       throw DatabaseError(fmt::format("has no frame up to tick {}", tick));
     const std::int64_t first = chunk.Integer(0), frames = chunk.Integer(1);

@@ -83,8 +83,8 @@ void WriteEvents(const Database& database, std::int64_t episode, const grammar::
     return truth::SecondsOf(ticks, timeline.ticks_per_second);
   };
   Statement insert = database.Prepare(
-      "INSERT INTO event(episode, event, begin_tick, end_tick, decided_tick, open_end, begin_s,"
-      " end_s, duration_s) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      "INSERT INTO event(episode, event, begin_tick, end_tick, decided_tick, open_end, begin_s, "
+      "end_s, duration_s) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
   Statement insert_role = database.Prepare("INSERT INTO event_role VALUES(?, ?, ?, ?, ?)");
   Statement insert_value = database.Prepare("INSERT INTO event_value VALUES(?, ?, ?, ?, ?)");
   for (const grammar::NamedEvent& event : timeline.events) {
@@ -274,8 +274,8 @@ std::int64_t WriteTask(const Database& database, const NewTask& task) {
   Statement find = database.Prepare("SELECT id FROM task WHERE uuid = ?");
   if (find.Bind(uuid).Step()) return find.Integer(0);
   Statement insert = database.Prepare(
-      "INSERT INTO task(uuid, scenario, file, asked_grammar, settings, shows)"
-      " VALUES(?, ?, ?, ?, ?, ?)");
+      "INSERT INTO task(uuid, scenario, file, asked_grammar, settings, shows) VALUES(?, ?, ?, ?, "
+      "?, ?)");
   insert.Bind(uuid).Bind(task.scenario).Bind(files.run.scenario_file).Bind(files.run.grammar);
   insert.Bind(nlohmann::json(files.run.settings).dump()).Bind(task.shows).Run();
   const std::int64_t row = database.LastRow();
@@ -300,10 +300,9 @@ std::int64_t WriteTask(const Database& database, const NewTask& task) {
 
 std::int64_t WriteEpisode(const Database& database, std::int64_t task, const NewEpisode& episode) {
   Statement insert = database.Prepare(
-      "INSERT INTO episode(uuid, task, status, grammar, ticks_per_second, ticks, state_hash,"
-      " outcome, engine, seed, program, program_hash, recorded_on, failure_entity,"
-      " failure_reason, failure_advice) VALUES(?, ?, ?, ?, ?, 0, '', '', ?, ?, ?, ?, ?, '', '',"
-      " '')");
+      "INSERT INTO episode(uuid, task, status, grammar, ticks_per_second, ticks, state_hash, "
+      "outcome, engine, seed, program, program_hash, recorded_on, failure_entity, failure_reason, "
+      "failure_advice) VALUES(?, ?, ?, ?, ?, 0, '', '', ?, ?, ?, ?, ?, '', '', '')");
   insert.Bind(episode.uuid.empty() ? NewUuid() : episode.uuid)
       .Bind(task)
       .Bind(kBeingRecorded)
@@ -325,8 +324,8 @@ void WriteEnd(const Database& database, std::int64_t episode, const char* status
     note.Bind(run.notes[i].hand.number()).Bind(run.notes[i].text).Run();
   }
   Statement end = database.Prepare(
-      "UPDATE episode SET status = ?, ticks = ?, state_hash = ?, outcome = ?,"
-      " failure_entity = ?, failure_reason = ?, failure_advice = ? WHERE id = ?");
+      "UPDATE episode SET status = ?, ticks = ?, state_hash = ?, outcome = ?, failure_entity = ?, "
+      "failure_reason = ?, failure_advice = ? WHERE id = ?");
   end.Bind(status).Bind(run.ticks).Bind(HashText(run.state_hash)).Bind(run.outcome);
   end.Bind(run.status.entity).Bind(run.status.reason).Bind(run.status.advice).Bind(episode).Run();
 }

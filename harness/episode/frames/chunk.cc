@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/episode/frames/frames_test.cc
 #include "harness/episode/frames/chunk.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/episode/run/find_scenario_test.cc
 #include "harness/episode/run/find_scenario.h"
 
 #include <fmt/format.h>

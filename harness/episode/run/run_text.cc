@@ -111,8 +111,7 @@ std::string MeasurementText(const Measurement& measurement) {
   };
   return fmt::format(
       "measured: {:.1f} times real time; physics {:.1f} %, sensing {:.1f} %, grammar {:.1f} % of "
-      "{:.3f} s; "
-      "peak memory {:.0f} MiB\n",
+      "{:.3f} s; peak memory {:.0f} MiB\n",
       seconds.total > 0 ? measurement.simulated_s / seconds.total : 0, share(seconds.physics),
       share(seconds.sensing), share(seconds.grammar), seconds.total,
       static_cast<double>(measurement.peak_memory_kib) / 1024);

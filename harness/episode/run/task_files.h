@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The files that a run was made from, kept with its episode, so that it can be loaded again where
-// the project has changed or is not there. Tested by
-// tests/harness/episode/run/task_files_test.cc
+// the project has changed or is not there. Tested by tests/harness/episode/run/task_files_test.cc
 #pragma once
 
 #include <map>

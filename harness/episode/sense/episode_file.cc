@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes an episode, see harness/episode/sense/episode_file.h. Tested by
-// tests/harness/episode/sense/episode_file_test.cc
+// Writes an episode, see harness/episode/sense/episode_file.h.
 #include "harness/episode/sense/episode_file.h"
 
 #include <fmt/format.h>

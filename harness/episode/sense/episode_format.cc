@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/scenario/read/read_scenario_test.cc and
-// tests/harness/episode/sense/sensing_test.cc
 #include "harness/episode/sense/episode_format.h"
 
 #include <algorithm>

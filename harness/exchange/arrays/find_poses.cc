@@ -36,10 +36,9 @@ Says PartOfName(std::string& name) {
   static const std::regex kLetter("^(?:(.*)[_. :/-])?(?:(p|t)|(q|r))_?$", std::regex::icase);
   static const std::regex kOther(
       "^.*(veloc|accel|normal|direction|extent|colou?r|gravity|force|torque|euler|angle|angular).*$"
-      "|"
-      "^(.*[_. "
-      "-])?(vel|acc|dir|size|dim|dimensions|up|forward|offset|scale|rpy|ypr|rotvec|rvec|gyro|"
-      "omega)$",
+      "|^(.*[_. "
+      "-])?(vel|acc|dir|size|dim|dimensions|up|forward|offset|scale|rpy|ypr|rotvec|rvec|gyro|omega)"
+      "$",
       std::regex::icase);
   std::smatch m;
   const std::string all = name.substr(0, kLongestKey);

@@ -167,8 +167,7 @@ class RowPoseReader {
       return errors_.Add((turned ? *turned : name).where,
                          "quaternion_order is missing: which of the four numbers is w",
                          "quaternion_order: wxyz for Isaac Lab up to 2 and ManiSkill, xyzw for "
-                         "Isaac Lab from 3 on "
-                         "and robosuite");
+                         "Isaac Lab from 3 on and robosuite");
     orders_ = orders_ || (by_quaternion && !by_name);
     others_ = others_ || matrix || (turned && (!by_quaternion || by_name));
     poses_.has_orientations = poses_.has_orientations || e.pose || turned;

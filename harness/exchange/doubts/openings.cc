@@ -34,8 +34,8 @@ OpeningDoubt JudgeOpening(const OpeningSeries& series, const Opening& said,
     const std::string place = worst.line > 0 ? fmt::format("{}:{}", file, worst.line)
                                              : fmt::format("{}, {:.3f} s", file, worst.t_s);
     doubt.text = fmt::format(
-        "{} of {} values of '{}' are more than a quarter of the range beyond "
-        "'open' or 'closed': {}: {:g}, {}",
+        "{} of {} values of '{}' are more than a quarter of the range beyond 'open' or 'closed': "
+        "{}: {:g}, {}",
         far, series.samples.size(), said.Names(), place, value(worst), range);
     doubt.hint = "is it another column, or another unit?";
     doubt.is_error = 2 * static_cast<std::size_t>(far) > series.samples.size();
@@ -44,8 +44,7 @@ OpeningDoubt JudgeOpening(const OpeningSeries& series, const Opening& said,
   const auto [least, most] = std::ranges::minmax(series.samples, {}, &OpeningSeries::Sample::open);
   if (series.is_grip && most.open - least.open < kHardlyMoves)
     doubt.text = fmt::format(
-        "'{}' hardly changes: from {:g} to {:g}, {}; is it another column, or "
-        "another unit?",
+        "'{}' hardly changes: from {:g} to {:g}, {}; is it another column, or another unit?",
         said.Names(), value(least), value(most), range);
   return doubt;
 }

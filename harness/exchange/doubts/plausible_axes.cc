@@ -226,17 +226,16 @@ Guess GuessAxes(const PoseFile& poses, const ImportMap& map, bool any_sign) {
     int told = 0;
     if (poses.stature && poses.stature->dot(up) < 0.7 * poses.stature->norm() &&
         (*poses.stature)[axis] > 0.9 * poses.stature->norm())
-      signs.push_back(
-          fmt::format("the head is {:.2f} m from the feet along {}, and {:.2f} m along "
-                      "{}: {} looks up",
-                      (*poses.stature)[axis] * map.MetresPerUnit(), "xyz"[axis],
-                      poses.stature->dot(up) * map.MetresPerUnit(), stated, "xyz"[axis]));
+      signs.push_back(fmt::format(
+          "the head is {:.2f} m from the feet along {}, and {:.2f} m along {}: {} looks up",
+          (*poses.stature)[axis] * map.MetresPerUnit(), "xyz"[axis],
+          poses.stature->dot(up) * map.MetresPerUnit(), stated, "xyz"[axis]));
     const Votes other_lifts = way.Lifts(other, highest_m, example);
     if (lifts.yes == 0 && lifts.no > 0 && other_lifts.no == 0) {
       told += other_lifts.yes;
       signs.push_back(
-          fmt::format("nothing is lifted along {}, but '{}' rises {:.2f} m along {} and "
-                      "comes down again: {} looks up",
+          fmt::format("nothing is lifted along {}, but '{}' rises {:.2f} m along {} and comes down "
+                      "again: {} looks up",
                       stated, example, highest_m, "xyz"[axis], "xyz"[axis]));
     }
     // Of things that stand at one height, the map has the table at another: that is not about up.
@@ -254,10 +253,10 @@ Guess GuessAxes(const PoseFile& poses, const ImportMap& map, bool any_sign) {
     if (const double near_m = NearestApproach(poses, upright, map.MetresPerUnit()).distance_m;
         !is_level && !seen.rests.empty() && here_m > kNowhere_m && near_m < kThere_m) {
       told += 3;
-      signs.push_back(fmt::format(
-          "with {} up, something tracked comes to what the map places, to which nothing "
-          "comes nearer than {:.2f} m now",
-          "xyz"[axis], here_m));
+      signs.push_back(
+          fmt::format("with {} up, something tracked comes to what the map places, to which "
+                      "nothing comes nearer than {:.2f} m now",
+                      "xyz"[axis], here_m));
     }
     const Votes other_turns = way.Turns(other);
     if (turns.Deny() && other_turns.Agree()) {
@@ -352,10 +351,10 @@ std::vector<std::string> GrippersTheOtherWay(const PoseFile& poses, const Import
     if (!series.is_grip || carrying.size() < 10 || held < widest - kAlike ||
         held < least + kClearly)
       continue;
-    lines.push_back(fmt::format(
-        "the gripper '{}' is never wider open than while it carries things: are open and closed "
-        "exchanged? (open: {:g}, closed: {:g}); or, if not, sure: [place]",
-        hand.from->value, hand.grip->closed, hand.grip->open));
+    lines.push_back(
+        fmt::format("the gripper '{}' is never wider open than while it carries things: are open "
+                    "and closed exchanged? (open: {:g}, closed: {:g}); or, if not, sure: [place]",
+                    hand.from->value, hand.grip->closed, hand.grip->open));
   }
   return lines;
 }
@@ -428,10 +427,9 @@ Guess GuessOrder(const PoseFile& poses, const ImportMap& map) {
   const auto slips_m = Slips_m(seen, {}), other_m = Slips_m(seen, is_wxyz);
   const bool slips = slips_m && *slips_m > kInHand_m && *other_m < *slips_m / 3;
   if (slips)
-    guess.signs.push_back(
-        fmt::format("things slip by {:.0f} mm in the hands that carry them, in the other order by "
-                    "{:.0f} mm",
-                    1e3 * *slips_m, 1e3 * *other_m));
+    guess.signs.push_back(fmt::format(
+        "things slip by {:.0f} mm in the hands that carry them, in the other order by {:.0f} mm",
+        1e3 * *slips_m, 1e3 * *other_m));
   // What stands, is carried and carries mostly stays upright; of some the map says when.
   std::vector<double> askew_deg, other_askew_deg;
   for (std::size_t body = 0; body < seen.looks.size(); ++body) {
@@ -482,10 +480,10 @@ Guess GuessAngleUnit(const PoseFile& poses, const ImportMap& map) {
     if (most > kSmooth * Median(std::move(steps))) turned = std::max(turned, most);
   }
   if (turned > kTurns_deg)
-    guess.signs.push_back(fmt::format(
-        "angles of up to {:.3g} are read as degrees, and nothing turns by more than {:.2g} "
-        "degrees; in radians that is {:.0f}",
-        poses.most_angle, turned, turned * kDegrees));
+    guess.signs.push_back(
+        fmt::format("angles of up to {:.3g} are read as degrees, and nothing turns by more than "
+                    "{:.2g} degrees; in radians that is {:.0f}",
+                    poses.most_angle, turned, turned * kDegrees));
   return guess;
 }
 
@@ -530,10 +528,10 @@ Guess GuessHandedness(const PoseFile& poses, const ImportMap& map) {
   const auto left_of = static_cast<std::size_t>(
       std::ranges::count_if(beside_m, [](double m) { return m < -kBeside_m; }));
   if (beside_m.size() < 20 || 10 * left_of < 7 * beside_m.size()) return guess;
-  guess.signs.push_back(fmt::format(
-      "the right hand is {:.2f} m to the left of the left hand, as they see what stands "
-      "before them: the file's axes look {}-handed, or the hands are exchanged",
-      -Median(std::move(beside_m)), other));
+  guess.signs.push_back(
+      fmt::format("the right hand is {:.2f} m to the left of the left hand, as they see what "
+                  "stands before them: the file's axes look {}-handed, or the hands are exchanged",
+                  -Median(std::move(beside_m)), other));
   return guess;
 }
 

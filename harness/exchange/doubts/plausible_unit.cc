@@ -167,8 +167,7 @@ class UnitGuesser {
     if (!lengths_.has_hands || poses_.bodies.size() < 2) return "";
     if (hands_m < kHandsWidth_m && hands_m > 0.002 && hands_m >= span_m / 2)
       return fmt::format(
-          "all hands together stay within {:.2g} m, and all that is tracked within "
-          "{:.2g} m",
+          "all hands together stay within {:.2g} m, and all that is tracked within {:.2g} m",
           hands_m, span_m);
     const double speed_m_per_s = lengths_.speed * scale;
     if (hands_m > kMostReach_m || speed_m_per_s > kFast_m_per_s)
@@ -219,12 +218,12 @@ DoubtfulThings ThingsTooLarge(const ImportMap& map) {
     const double most_m = map.MetresPerUnit() == 0.01 ? kMostSize_m : kUsualSize_m;
     const double factor = in_millimetres || size.maxCoeff() / 100 > most_m ? 1000 : 100;
     large.things.insert(i);
-    large.warnings.push_back(fmt::format(
-        "'{}' is {:g} x {:g} x {:g} m large, and size_m is in metres; if these are {}: size_m: "
-        "[{:g}, {:g}, {:g}]",
-        map.entities[i].name, size.x(), size.y(), size.z(),
-        factor == 100 ? "centimetres" : "millimetres", size.x() / factor, size.y() / factor,
-        size.z() / factor));
+    large.warnings.push_back(
+        fmt::format("'{}' is {:g} x {:g} x {:g} m large, and size_m is in metres; if these are {}: "
+                    "size_m: [{:g}, {:g}, {:g}]",
+                    map.entities[i].name, size.x(), size.y(), size.z(),
+                    factor == 100 ? "centimetres" : "millimetres", size.x() / factor,
+                    size.y() / factor, size.z() / factor));
   }
   return large;
 }

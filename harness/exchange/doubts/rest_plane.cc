@@ -162,8 +162,7 @@ std::string TiltOfRestPlane(const episode::Recording& episode, const ImportMap& 
     return fmt::format(
         "things rest on a plane that is tilted by {:.1f} degrees: {} of {} places of rest, of {} "
         "things, are {:.1f} mm off it (root mean square); in the map: up: [{:g}, {:g}, {:g}]; or, "
-        "if "
-        "they stand at several heights, what they stand on",
+        "if they stand at several heights, what they stand on",
         degrees, seen.places.size(), all, things.size(), 1e3 * plane.off_m, number(up.x()),
         number(up.y()), number(up.z()));
   }

@@ -121,11 +121,11 @@ std::vector<std::string> RestOddly(const episode::Recording& episode,
     const RestPoses rests = RestPosesOf(episode, i);
     if (static_cast<double>(rests.bottoms_m.size()) * kBetweenLooks_s < kLeast_s) continue;
     if (2 * rests.off_m.size() > rests.bottoms_m.size())
-      lines.push_back(fmt::format(
-          "'{0}' rests {1:.0f} mm {2} '{3}': is at_m or size_m of '{3}', or offset_m or size_m of "
-          "'{0}' wrong?",
-          entities[i].name, 1e3 * std::abs(Median(rests.off_m)),
-          Median(rests.off_m) < 0 ? "deep in" : "above", entities[rests.off].name));
+      lines.push_back(
+          fmt::format("'{0}' rests {1:.0f} mm {2} '{3}': is at_m or size_m of '{3}', or offset_m "
+                      "or size_m of '{0}' wrong?",
+                      entities[i].name, 1e3 * std::abs(Median(rests.off_m)),
+                      Median(rests.off_m) < 0 ? "deep in" : "above", entities[rests.off].name));
     if (2 * rests.supported >= rests.bottoms_m.size()) continue;
     names.push_back(fmt::format("'{}'", entities[i].name));
     bottoms_m.push_back(Median(rests.bottoms_m));
@@ -136,8 +136,7 @@ std::vector<std::string> RestOddly(const episode::Recording& episode,
   const Eigen::Vector2d middle = place.center(), size = place.sizes().array() + 0.4;
   lines.push_back(fmt::format(
       "{} {} with the lowest point at {:.2f} m, and nothing in the map has its top within {:g} cm "
-      "of "
-      "that: no support, pick-up or put-down is recognised; what it stands on could be 'table: "
+      "of that: no support, pick-up or put-down is recognised; what it stands on could be 'table: "
       "{{at_m: [{:.1f}, {:.1f}, {:.2f}], fixed: true, class: Table, size_m: [{:.1f}, {:.1f}, "
       "0.04]}}'{}",
       fmt::join(names, ", "), names.size() == 1 ? "rests" : "rest", height_m, 100 * kOnTop_m,

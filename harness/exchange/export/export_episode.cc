@@ -369,8 +369,7 @@ std::string MapText(const Motion& motion, const std::string& ending) {
   if (ending == ".csv")
     text +=
         "quaternion_order: wxyz\ntime_unit: s\n"
-        "columns: {time: t, body: entity, position: [x, \"y\", z], "
-        "quaternion: [qw, qx, qy, qz]}\n";
+        "columns: {time: t, body: entity, position: [x, \"y\", z], quaternion: [qw, qx, qy, qz]}\n";
   else if (ending == ".npz")
     text += "quaternion_order: wxyz\nt: t_s\ntime_unit: s\nmissing: [nan]\n";
   else

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/exchange/hdf5/hdf5_file_test.cc and tests/program/labels_back.py
 #include "harness/exchange/hdf5/hdf5_file.h"
 
 #include <fmt/format.h>
@@ -133,8 +132,7 @@ std::string Refusal(hid_t dataset) {
     const auto [filter, name] = FilterOf(plist, i);
     if (filter != H5Z_FILTER_DEFLATE && filter != H5Z_FILTER_SHUFFLE)
       return fmt::format(
-          "is compressed by '{}' (filter {}); gzip and shuffle are read: "
-          "h5repack -f GZIP=4 IN OUT",
+          "is compressed by '{}' (filter {}); gzip and shuffle are read: h5repack -f GZIP=4 IN OUT",
           name, filter);
   }
   return "";

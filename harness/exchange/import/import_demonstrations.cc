@@ -135,8 +135,7 @@ class Comparison {
             fmt::format("'{}' is a frame {} '{}', which is the same motion, and so of '{}'",
                         mine.name, ahead ? "ahead of" : "behind", other.name, from->value),
             fmt::format("what is written after the action is shifted: {}: {{.., shift: {}{}}}; or, "
-                        "if it is right, "
-                        "sure: [time]",
+                        "if it is right, sure: [time]",
                         ahead ? entity.name : with.name, (ahead ? entity : with).value.shift + 1,
                         first.empty() ? "" : ", first: " + first));
       }
@@ -178,11 +177,11 @@ class Comparison {
     for (std::size_t i = 1; i < times->size(); ++i)
       if (!(std::abs((*times)[i] - (*times)[i - 1] - step) < 0.01 * step)) return;
     if (std::abs(step * rate_hz_ - 1) > 0.05)
-      errors_.Add(map_.rate_hz ? map_.rate_hz->where : Where{},
-                  fmt::format("rate_hz is {:g}, but the times in 'states' are {:.4g} s apart: "
-                              "{:.4g} Hz",
-                              rate_hz_, step, 1 / step),
-                  "correct rate_hz; or, if it is right, sure: [time]");
+      errors_.Add(
+          map_.rate_hz ? map_.rate_hz->where : Where{},
+          fmt::format("rate_hz is {:g}, but the times in 'states' are {:.4g} s apart: {:.4g} Hz",
+                      rate_hz_, step, 1 / step),
+          "correct rate_hz; or, if it is right, sure: [time]");
   }
 
   const Hdf5File& file_;

@@ -62,8 +62,7 @@ std::string ImportTable(const Imported& imported);
 /// or guessed; sizes are `unknown`; what is doubtful is said in comments.
 Result<std::string> ProposedMap(const std::string& poses_path);
 
-// The demonstrations of an HDF5 file, each a recording.
-// Tested by tests/program/import_hdf5.py
+// The demonstrations of an HDF5 file, each a recording. Tested by tests/program/import_hdf5.py
 
 class DemonstrationImport {
  public:

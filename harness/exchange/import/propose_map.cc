@@ -110,8 +110,7 @@ class MapProposer {
     keys_ = found.keys, needs_rate_ = found.needs_rate, aside_ = found.aside;
     if (found.is_of_unity)
       doubts_.push_back(
-          "vectors are texts, as Unity writes them: its axes are left-handed, "
-          "handed: left");
+          "vectors are texts, as Unity writes them: its axes are left-handed, handed: left");
     const auto is_bone = [](const FoundBody& body) { return IsBone(WordsIn(body.called)); };
     const bool all_bones = std::ranges::all_of(found.bodies, is_bone);
     std::set<std::string> taken;
@@ -146,8 +145,8 @@ class MapProposer {
         unit_ = *layout_->unit == LengthUnit::kMillimetre ? "unit: mm" : "unit: m";
       if (!layout_->columns.axis_angle.empty())
         doubts_.push_back(
-            "three angles are read as axis times angle; if they are Euler angles, "
-            "the map says euler_order: XYZ");
+            "three angles are read as axis times angle; if they are Euler angles, the map says "
+            "euler_order: XYZ");
       needs_rate_ = !layout_->columns.time && !layout_->rate_hz;
       return {};
     }
@@ -222,8 +221,8 @@ class MapProposer {
       if (markers.size() < 3) continue;
       has_markers_ = true;
       doubts_.push_back(
-          fmt::format("are these markers of one body? markers: [{}], in the place "
-                      "of from, gives it orientations",
+          fmt::format("are these markers of one body? markers: [{}], in the place of from, gives "
+                      "it orientations",
                       fmt::join(markers, ", ")));
     }
   }
@@ -406,9 +405,8 @@ class MapProposer {
     std::string text;
     if (commented) {
       text += fmt::format(
-          "# Proposed from {}{}. Fill in: {}each size_m, the edges of its box along "
-          "x, y and z (up), in metres,\n# like [0.08, 0.08, 0.1]. Are names, classes "
-          "and hands right?\n",
+          "# Proposed from {}{}. Fill in: {}each size_m, the edges of its box along x, y and z "
+          "(up), in metres,\n# like [0.08, 0.08, 0.1]. Are names, classes and hands right?\n",
           Comment(std::filesystem::path(path_).filename().string()),
           head_.empty() ? "" : ", " + head_, needs_rate_ ? "rate_hz; " : "");
       if (!summary_.empty()) text += "# " + summary_ + "\n";

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recorded task and its episodes as statements (docs/knowledge.md): a semantic map of the
-// entities, and the events with their participants. Tested by
-// tests/program/knowledge_test.cc
+// entities, and the events with their participants. Tested by tests/program/knowledge_test.cc
 #pragma once
 
 #include <cstdint>

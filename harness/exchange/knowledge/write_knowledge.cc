@@ -198,11 +198,10 @@ class KnowledgeWriter {
     for (const auto& [name, bytes] : {std::pair{"triples", TriplesBson(all, hierarchy_)},
                                       std::pair{"tf", TransformsBson(transforms)},
                                       std::pair{"annotations", AnnotationsBson(all)}}) {
-      const std::string metadata =
-          std::string(
-              "{\"options\":{},\"indexes\":[{\"v\":2,\"key\":{\"_id\":1},\"name\":\"_id_\"}]"
-              ",\"collectionName\":\"") +
-          name + "\"}\n";
+      const std::string metadata = std::string(
+                                       "{\"options\":{},\"indexes\":[{\"v\":2,\"key\":{\"_id\":1},"
+                                       "\"name\":\"_id_\"}],\"collectionName\":\"") +
+                                   name + "\"}\n";
       for (const auto& [ending, content] :
            {std::pair{".bson", &bytes}, std::pair{".metadata.json", &metadata}}) {
         grammar::Diagnostics bad = WriteBytes(folder + name + ending, *content);

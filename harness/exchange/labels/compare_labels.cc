@@ -27,9 +27,8 @@ grammar::Diagnostic SeveralTakes(const LabelFile& file, const std::string& take)
                       ? fmt::format("column '{}' has", file.several.front())
                       : fmt::format("columns '{}' have", fmt::join(file.several, "' and '")),
                   take),
-      fmt::format("in the map columns: {{take: {0}}}, if recordings are called as in it; "
-                  "or rows: {{{0}: VALUE}} in a file of takes; or columns: {{take: "
-                  "ignore}}",
+      fmt::format("in the map columns: {{take: {0}}}, if recordings are called as in it; or rows: "
+                  "{{{0}: VALUE}} in a file of takes; or columns: {{take: ignore}}",
                   file.several.front()));
 }
 

@@ -145,12 +145,11 @@ class MapReader {
         map_.csv.roles.push_back({node.key, node.text});
       } else {
         for (const auto& [name, _] : columns_) known.insert(name);
-        errors_.AddUnknownName(
-            node.key_where,
-            "'" + node.key +
-                "' is no column of labels: begin, end, duration, time, kind, frame, label, tier, "
-                "take or a role",
-            node.key, {known.begin(), known.end()});
+        errors_.AddUnknownName(node.key_where,
+                               "'" + node.key +
+                                   "' is no column of labels: begin, end, duration, time, kind, "
+                                   "frame, label, tier, take or a role",
+                               node.key, {known.begin(), known.end()});
       }
     }
   }

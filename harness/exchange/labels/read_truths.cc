@@ -135,8 +135,7 @@ class TruthReader {
                (given.size() != 1 || !AllHaveRows())) {
       problem = fmt::format(
           "{} recordings and {} files of {}; wanted one file for each recording, in the same "
-          "order, "
-          "or a folder, or one table of all whose column says the recording: {}",
+          "order, or a folder, or one table of all whose column says the recording: {}",
           takes_.size(), given.size(), what_,
           clock_ ? "'episode'" : "in the map columns: {take: COLUMN}");
     }
@@ -164,8 +163,8 @@ class TruthReader {
         return one.file + (one.number ? fmt::format(" (episode {})", *one.number) : "");
       };
       return fmt::format(
-          "the same {} of {} would count for {} and for {}, both called '{}'; a "
-          "file of takes names the labels of each (docs/labels.md)",
+          "the same {} of {} would count for {} and for {}, both called '{}'; a file of takes "
+          "names the labels of each (docs/labels.md)",
           what_, paths[i], text(known->second), text(i), takes_[i].episode.scenario);
     }
     return "";

@@ -46,8 +46,7 @@ void CheckOrientation(const ImportMap& map, DiagnosticList& errors) {
   if (!upright.empty())
     errors.Add(columns.position.front().where,
                fmt::format("columns.quaternion is missing, and upright_at_s or axes_quat_wxyz of "
-                           "{} needs bodies with "
-                           "orientations",
+                           "{} needs bodies with orientations",
                            fmt::join(upright, ", ")),
                "quaternion: [the four columns, in quaternion_order]; or, if the file has positions "
                "only, leave these out");
@@ -93,9 +92,11 @@ void CheckColumns(const ImportMap& map, const YamlNode& root, DiagnosticList& er
     for (const Located<std::string>& column : *list) {
       const bool names_body = column.value.find("{}") != std::string::npos;
       if (!columns.body.empty() && names_body)
-        errors.Add(column.where, fmt::format("'{}' stands for all bodies of a row, but "
-                                             "columns.body says that a row has one",
-                                             column.value));
+        errors.Add(
+            column.where,
+            fmt::format(
+                "'{}' stands for all bodies of a row, but columns.body says that a row has one",
+                column.value));
       if (columns.body.empty() && !names_body && !columns.IsOfOneBody())
         errors.Add(column.where, fmt::format("'{}' names no body", column.value),
                    "write '{}' where the body's name stands, as in the others; or say in "
@@ -123,9 +124,9 @@ void CheckUp(const ImportMap& map, const YamlNode& root, DiagnosticList& errors)
   const double degrees = std::acos(map.up->value.normalized()[map.axes->value]) * 180 / EIGEN_PI;
   if (degrees > kMostTilt_deg)
     errors.Add(map.up->where,
-               fmt::format("up is {:.0f} degrees away from the {} of the file, which 'axes' says "
-                           "points up",
-                           degrees, "xyz"[map.axes->value]),
+               fmt::format(
+                   "up is {:.0f} degrees away from the {} of the file, which 'axes' says points up",
+                   degrees, "xyz"[map.axes->value]),
                "leave out 'axes', or correct one of the two");
 }
 
@@ -159,14 +160,12 @@ void CheckDatasets(const Named<MappedEntity>& entity, PoseFormat format, Diagnos
   const bool has_arrays = HasArrays(format);
   const auto check = [&](const Located<std::string>& name, const char* key) {
     if (!has_arrays)
-      errors.Add(name.where,
-                 fmt::format("'{}' is a dataset of an HDF5 file, an array of .npz or a path of "
-                             "JSON; this file is none of these",
-                             key));
+      errors.Add(name.where, fmt::format("'{}' is a dataset of an HDF5 file, an array of .npz or a "
+                                         "path of JSON; this file is none of these",
+                                         key));
     else if (format != PoseFormat::kJson && !Hdf5PartOf(name.value))
       errors.Add(name.where,
-                 fmt::format("expected a dataset below the group of a demonstration, "
-                             "found '{}'",
+                 fmt::format("expected a dataset below the group of a demonstration, found '{}'",
                              name.value),
                  "obs/eef_pos, or with its columns, from 0, obs/object[0:3]");
   };
@@ -258,9 +257,9 @@ void CheckMap(const ImportMap& map, PoseFormat format, const YamlNode& root,
     else if (e.part_of && (e.hand || e.fixed || e.joint || e.part_of->value == entity.name))
       errors.Add(
           e.part_of->where,
-          fmt::format("'{}' is part of another thing, so it is no hand, is not fixed and has "
-                      "no joint",
-                      entity.name));
+          fmt::format(
+              "'{}' is part of another thing, so it is no hand, is not fixed and has no joint",
+              entity.name));
     if (e.hand && (e.fixed || e.class_name.value != "Object"))
       errors.Add(entity.name_where,
                  fmt::format("'{}': a hand has no class and is not fixed", entity.name));

@@ -156,10 +156,9 @@ ValueFormat<MappedEntity> EntityFormat() {
       .Optional(
           "markers", &E::markers, ListOf(WithPlace(Text(200)), 3, 100),
           "Of tables and C3D: the markers that are on it, the body's name in the place of {}.")
-      .Optional(
-          "residual_m", &E::residual_m, Number(0, 10),
-          "How far its markers may be off their shape, or the tracker's error be; beyond that "
-          "it is not tracked.")
+      .Optional("residual_m", &E::residual_m, Number(0, 10),
+                "How far its markers may be off their shape, or the tracker's error be; beyond "
+                "that it is not tracked.")
       .Optional("first", &E::first, Text(500), "Of HDF5: its pose before the first row.")
       .Optional("shift", &E::shift, Integer<int>(-10, 10),
                 "Of HDF5: its rows count so many frames later: 1 of what is written after actions.")
@@ -244,8 +243,8 @@ ValueFormat<ImportMap> MapFormat() {
           "lost", &M::lost,
           Choice<Lost>(
               {{"refuse", Lost::kRefuse}, {"hold", Lost::kHold}, {"unknown", Lost::kUnknown}}),
-          "What is done where a body is not tracked for longer: nothing is imported, it "
-          "stays where it was, or nobody knows where it is.")
+          "What is done where a body is not tracked for longer: nothing is imported, it stays "
+          "where it was, or nobody knows where it is.")
       .Optional("outlier", &M::outlier,
                 Choice<OutlierRule>({{"keep", OutlierRule::kKeep}, {"lost", OutlierRule::kLost}}),
                 "Poses that leave and come back faster than hands do: as they are, or not tracked.")

@@ -284,23 +284,22 @@ std::string LogSeries::TakePose(const LogMessage& message, const MessagePose& po
   const std::int64_t ns = TimeOf(message, pose.stamp_ns);
   if (map_.mcap.clock == Clock::kHeader && pose.stamp_ns && ns == 0 && !fixed)
     return fmt::format(
-        "'{}' has the time 0 in its header; if it has no clock, the map says "
-        "mcap: {{clock: log}}",
+        "'{}' has the time 0 in its header; if it has no clock, the map says mcap: {{clock: log}}",
         name);
   if (ns < 0 || ns > kLast_ns)
     return fmt::format("'{}' has the time {:.0f} s; expected one of the years 1970 to 2116", name,
                        static_cast<double>(static_cast<std::uint64_t>(ns)) * 1e-9);
   if (!link.poses.empty() && ns < link.poses.back().ns - kMostBack_ns)
     return fmt::format(
-        "the times of '{}' go back from {:.6f} to {:.6f} s: its clock was set, or "
-        "these are two recordings",
+        "the times of '{}' go back from {:.6f} to {:.6f} s: its clock was set, or these are two "
+        "recordings",
         name, InSeconds(link.poses.back().ns), InSeconds(ns));
   if (pose.missing || (map_.zero_is_missing && pose.p.isZero(0) && ++zeros > 0)) return "";
   if (!pose.p.allFinite() || !pose.xyzw.allFinite()) {
     if (nan_is_missing_) return "";
     return fmt::format(
-        "'{}' has a pose that is no number; if that means 'not tracked', the map "
-        "says missing: [nan]",
+        "'{}' has a pose that is no number; if that means 'not tracked', the map says missing: "
+        "[nan]",
         name);
   }
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
@@ -309,9 +308,9 @@ std::string LogSeries::TakePose(const LogMessage& message, const MessagePose& po
     if (std::abs(length - 1) > kUnitTolerance)
       return fmt::format(
           "'{}': expected a unit quaternion, found one of length {:.4g}{}", name, length,
-          pose.p.isZero(0) ? "; if a body at exactly 0, 0, 0 is not tracked, the map "
-                             "says zero_is_missing: true"
-                           : "");
+          pose.p.isZero(0)
+              ? "; if a body at exactly 0, 0, 0 is not tracked, the map says zero_is_missing: true"
+              : "");
     const Eigen::Vector4d& v = pose.xyzw;
     q = Eigen::Quaterniond(v[3], v[0], v[1], v[2]);
     if (order_ == QuaternionOrder::kWxyz) q = Eigen::Quaterniond(v[0], v[1], v[2], v[3]);

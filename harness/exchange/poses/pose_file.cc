@@ -360,8 +360,7 @@ std::string MarkerErrors::Text(const std::string& body, const std::string& what,
       line > 0 ? fmt::format("{}:{}", file, line) : fmt::format("{:.3f} s", most_s);
   return fmt::format(
       "'{}': in {} of {} frames its {} are more than {:g} mm off (residual_m), most at {}, {:.1f} "
-      "mm: "
-      "it is not tracked there",
+      "mm: it is not tracked there",
       body, count, of, what, 1e3 * limit_m, place, 1e3 * most * metres_per_unit);
 }
 

@@ -68,8 +68,7 @@ std::optional<TableLayout> MotiveOf(const Lines& lines) {
   layout.time_unit = TimeUnit::kSecond;
   if (says["Coordinate Space"] == "Local")
     layout.notes.push_back(
-        "its Coordinate Space is Local: bones are relative to their parents, "
-        "and not to the room");
+        "its Coordinate Space is Local: bones are relative to their parents, and not to the room");
   // The kinds of bodies stand in the first of the lines that name a column, their names in the
   // second; identifiers and parents may follow.
   std::size_t types = 1;
@@ -369,10 +368,9 @@ std::string HeadOfFile(const std::string& path) {
 
 void Complete(TableLayout& layout, Where where, ImportMap& map, DiagnosticList& errors) {
   if (!map.columns.position.empty())
-    layout.notes.push_back(
-        fmt::format("this is {}, which says itself where its values stand: "
-                    "'columns' of the map is not used",
-                    layout.name));
+    layout.notes.push_back(fmt::format(
+        "this is {}, which says itself where its values stand: 'columns' of the map is not used",
+        layout.name));
   if (!map.metres_per_unit && (layout.says_unit || !map.unit))
     Agree(layout.unit, map.unit, "unit", layout, where, errors);
   Agree(layout.quaternion_order, map.quaternion_order, "quaternion_order", layout, where, errors);

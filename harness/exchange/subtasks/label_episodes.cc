@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/program/labels_back.py
 #include "harness/exchange/subtasks/label_episodes.h"
 
 #include <fmt/format.h>
@@ -165,10 +164,9 @@ tl::expected<std::vector<Subtasks>, episode::NotFound> LabelEpisodes(
     all.push_back(FindSubtasks(map->map, *motion));
     all.back().source = source;
     if (source != all.front().source && !request.hdf5.empty())
-      return Refused(
-          fmt::format("--output: the episodes are of {} and of {}; label those of one "
-                      "file at a time",
-                      all.front().source, source));
+      return Refused(fmt::format(
+          "--output: the episodes are of {} and of {}; label those of one file at a time",
+          all.front().source, source));
   }
   std::string problem;
   if (request.hdf5.empty()) {

@@ -45,10 +45,9 @@ class PREHEND_API Error : public std::runtime_error {
 /// A grammar, compiled; immutable.
 class PREHEND_API Grammar {
  public:
-  /// `name_or_path`: of the library or of the project, or a file
-  /// ("my/rules.grammar"); several with '+' between them are compiled as one. `parameters`: name ->
-  /// value with unit as in the text, {"reach_radius", "25 cm"}. `instead`: path -> what is compiled
-  /// in place of the file's text.
+  /// `name_or_path`: of the library or of the project, or a file ("my/rules.grammar"); several with
+  /// '+' between them are compiled as one. `parameters`: name -> value with unit as in the text,
+  /// {"reach_radius", "25 cm"}. `instead`: path -> what is compiled in place of the file's text.
   explicit Grammar(std::string name_or_path, grammar::Overrides parameters = {},
                    const std::map<std::string, std::string>& instead = {});
   Grammar(const Grammar&);

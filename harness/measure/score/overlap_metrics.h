@@ -96,7 +96,7 @@ struct FrameCounts {
         *this, other);
   }
   grammar::Tick InTruth() const { return correct + confused + missed; }
-  /// Mean over frames (MoF), 0..1, with background; and within the truth's segments.
+  /// Mean over frames (MoF), 0..1, with background.
   double Accuracy() const;
   /// Identification error rate; the same as the segment-based error rate on the tick grid.
   double ErrorRate() const;

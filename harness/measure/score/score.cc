@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/measure/score/score_test.cc
 #include "harness/measure/score/score.h"
 
 #include <fmt/format.h>

@@ -283,9 +283,8 @@ std::string ScoreTable(const Score& score, double collar_s) {
 std::string SideBySide(const std::vector<Score>& scores, double collar_s) {
   std::string text = fmt::format(
       "| grammar | true events | not covered by the grammar | correct | deleted | fragmented | "
-      "merged | inserted | "
-      "begin, ms | end, ms | F1@10 | F1@25 | F1@50 "
-      "| F1@50, mean of types | edit | frames % | F at {:.0f} ms "
+      "merged | inserted | begin, ms | end, ms | F1@10 | F1@25 | F1@50 | F1@50, mean of types | "
+      "edit | frames % | F at {:.0f} ms "
       "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
       kMsPerS * collar_s);
   for (const Score& score : scores) {
@@ -315,8 +314,7 @@ std::string ScoresText(const std::vector<Score>& scores, double collar_s) {
          "found - true: median / 95th percentile / largest, the last two by magnitude; late: from "
          "an event's end to its\n"
          "decision, median / 95th percentile / largest; all: pooled, mean: of the kinds above. "
-         "Every "
-         "grammar is scored on\nthe same true events.\n";
+         "Every grammar is scored on\nthe same true events.\n";
 }
 
 Json ScoresJson(const std::vector<Score>& scores, double collar_s, bool with_events) {

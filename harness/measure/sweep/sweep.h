@@ -146,9 +146,8 @@ struct Margins {
 };
 
 /// Tries an eighth to eight times of each value, in steps of 19 or 41 percent. `within` is a share
-/// of F1; `only` these parameters, all if there are none. `request.axes` is not used.
-/// `so_far` is called with the result as it is after each parameter, of scenarios after
-/// sixteen.
+/// of F1; `only` these parameters, all if there are none. `request.axes` is not used. `so_far` is
+/// called with the result as it is after each parameter, of scenarios after sixteen.
 Result<Margins> FindMargins(const std::vector<episode::Take>& takes, SweepRequest request,
                             double within, const std::vector<std::string>& only = {},
                             const std::function<void(const Margins&)>& so_far = {});

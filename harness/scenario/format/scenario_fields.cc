@@ -106,8 +106,7 @@ ValueFormat<PictureYaml> PictureFormat() {
                 "When: an event's 'begin' or 'end', or seconds.")
       .Optional("camera", &PictureYaml::camera, Identifier(),
                 "From where: front, left, right, top, three_quarter; hand, action or body, which "
-                "are nearer "
-                "to what they name; or an entity that is a camera.")
+                "are nearer to what they name; or an entity that is a camera.")
       .format();
 }
 
@@ -158,10 +157,9 @@ ValueFormat<ScenarioYaml> BuildScenarioFormat() {
                 "Classes and their base classes: {Cup: Container}.")
       .Optional("actors", &S::actors, MapOf(Identifier(), ActorFormat(), 0, kMaxActors),
                 "The hands and persons, by name.")
-      .Optional(
-          "script", &S::script, ListOf(StageFormat(), 0, kMaxBeats),
-          "What the actors do: stages, one after another; in a stage one step per named actor, or "
-          "a list of steps.")
+      .Optional("script", &S::script, ListOf(StageFormat(), 0, kMaxBeats),
+                "What the actors do: stages, one after another; in a stage one step per named "
+                "actor, or a list of steps.")
       .Optional("settle_s", &S::settle_s, Number(0, 60), "Time simulated after the last stage.")
       .Optional("vary", &S::vary, ListOf(VariationFormat(), 0, kMaxVariations),
                 "What differs from trial to trial of 'prehend run --trials'.")

@@ -92,8 +92,7 @@ inline constexpr std::size_t kMaxVariations = 64;
 inline constexpr std::size_t kMaxOutcomes = 16;
 
 // A hand file as it is written: digits are straight chains of phalanges, or jaws that slide; angles
-// are in degrees.
-// Every key is declared once, in harness/scenario/format/hand_fields.cc;
+// are in degrees. Every key is declared once, in harness/scenario/format/hand_fields.cc;
 // harness/scenario/read/read_scenario.h makes a physics::HandModel of it. Tested by
 // tests/harness/scenario/read/read_hand_model_test.cc
 

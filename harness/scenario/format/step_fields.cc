@@ -85,13 +85,12 @@ ValueFormat<StepYaml> OneValueStep(const std::string& key, M Entry::*member,
 
 ValueFormat<StepYaml> TurnHandFormat() {
   using T = TurnHandYaml;
-  return Step(
-      StructFormat<T>("a turn_by_deg step")
-          .Required("turn_by_deg", &T::turn_by_deg, Vector<3>(-3600, 3600),
-                    "The hand turns about its palm: degrees about x, y or z; of several about the "
-                    "axis that they point along, by their length.")
-          .Optional("axes", &T::own_axes, Choice<bool>({{"world", false}, {"hand", true}}),
-                    "Whose axes these are."));
+  return Step(StructFormat<T>("a turn_by_deg step")
+                  .Required("turn_by_deg", &T::turn_by_deg, Vector<3>(-3600, 3600),
+                            "The hand turns about its palm: degrees about x, y or z; of several "
+                            "about the axis that they point along, by their length.")
+                  .Optional("axes", &T::own_axes, Choice<bool>({{"world", false}, {"hand", true}}),
+                            "Whose axes these are."));
 }
 
 ValueFormat<StepYaml> OrbitFormat() {
@@ -143,12 +142,13 @@ ValueFormat<StepYaml> ReachFormat() {
 
 ValueFormat<StepYaml> FollowJointFormat() {
   using F = FollowJointYaml;
-  return Step(StructFormat<F>("a follow_joint step")
-                  .Required("follow_joint", &F::follow_joint, Identifier(),
-                            "The entity on a slider or hinge whose path the hand follows, with "
-                            "what it holds.")
-                  .Optional("to", &F::to, Number(0, 1),
-                            "Where the joint ends: 0 is the minimum of its range, 1 the maximum."));
+  return Step(
+      StructFormat<F>("a follow_joint step")
+          .Required(
+              "follow_joint", &F::follow_joint, Identifier(),
+              "The entity on a slider or hinge whose path the hand follows, with what it holds.")
+          .Optional("to", &F::to, Number(0, 1),
+                    "Where the joint ends: 0 is the minimum of its range, 1 the maximum."));
 }
 
 ValueFormat<StepYaml> WaitFormat() {
@@ -429,8 +429,7 @@ Remedies StepRemedies() {
       {"lift lift_m raise", "straight up is 'lift_by_m: 0.2'"},
       {"move move_to move_to_m go_to goto carry carry_to transport",
        "'reach: milk' goes to a thing, 'move_by_m: [x, y, z]' by a way, 'carry_to_m: [x, y]' "
-       "brings "
-       "what is held to a place, 'poses: [..]' goes anywhere"},
+       "brings what is held to a place, 'poses: [..]' goes anywhere"},
       {"wait pause hold sleep delay_s", "to hold still is 'wait_s: 1'"},
       {"turn rotate twist", "to turn the hand is 'turn_by_deg: [0, 0, 90]'"},
       {"place put put_down put_on set_down", "to set down is 'place_on: table'"},
@@ -447,8 +446,8 @@ Remedies StepRemedies() {
        "'orbit: {around: milk, by_deg: 180, at_m: 0.2}' goes around a thing"},
       {"times loop for", kRepeatRemedy},
       {"shake stir wipe",
-       "'repeat: 3' with 'steps: [..]' plays steps several times; "
-       "docs/script-cookbook.md has a script"},
+       "'repeat: 3' with 'steps: [..]' plays steps several times; docs/script-cookbook.md has a "
+       "script"},
       {"hand_over give stack throw",
        "it takes several steps; docs/script-cookbook.md and 'prehend new NAME' have scripts"},
       {"look", "a person looks by 'look_at: milk'"},
@@ -466,8 +465,7 @@ Remedies StepRemedies() {
 ValueFormat<physics::Until> UntilFormat() {
   const auto condition = Word(
       "(touching\\(([a-z][a-z0-9_]*, )?[a-z][a-z0-9_]*\\)|gap\\(([a-z][a-z0-9_]*, "
-      ")?[a-z][a-z0-9_]*\\) "
-      "< [0-9]+(\\.[0-9]+)? (mm|cm|m))(, or go on)?",
+      ")?[a-z][a-z0-9_]*\\) < [0-9]+(\\.[0-9]+)? (mm|cm|m))(, or go on)?",
       kConditions, 120);
   const auto read = [condition](const YamlNode& node, DiagnosticList& errors,
                                 physics::Until& until) {

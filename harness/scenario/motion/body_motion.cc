@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/scenario/motion/body_motion_test.cc
 #include "harness/scenario/motion/body_motion.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/scenario/motion/read_bvh_test.cc
 #include "harness/scenario/motion/read_bvh.h"
 
 #include <fmt/format.h>

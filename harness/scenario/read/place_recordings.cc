@@ -38,8 +38,7 @@ bool Cut(const RecordingYaml& entry, Track& track, DiagnosticList& errors) {
   constexpr double kRounded_s = 0.005;  // as lengths are written
   if (to_s > last_s + kRounded_s) {
     errors.Add(entry.to_s->where,
-               fmt::format("to_s: expected at most {:.3f}, the length of the "
-                           "recording, found {}",
+               fmt::format("to_s: expected at most {:.3f}, the length of the recording, found {}",
                            last_s, to_s),
                "without to_s it is played to its end");
     return false;

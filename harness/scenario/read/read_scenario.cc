@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/scenario/read/read_scenario_test.cc
 #include "harness/scenario/read/read_scenario.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Explanations for programs. Explanations for people: a tree of clauses, aligned; one line per
-// event for all of them. Tested by tests/harness/show/explain/explain_test.cc
+// event for all of them.
 #include "harness/show/explain/explain.h"
 
 #include <fmt/format.h>

@@ -178,8 +178,7 @@ Reasons MissingReasons::WhyItHolds(InstanceId instance, FrameNumber frame) {
   return reasons;
 }
 
-// Into the rule that decides. What never held is looked for everywhere, if no moment was asked
-// for.
+// Into the rule that decides. What never held is looked for everywhere, if no moment was asked for.
 void MissingReasons::Follow(Reason& reason, InstanceId target, FrameNumber frame,
                             const Window& window, int depth) {
   if (target == kNone || past_.RuleOf(target).form() == Form::kTouching) return;

@@ -293,8 +293,7 @@ Sheet ComparisonSheet(const scenario::Scenario& scenario, const Side& first, con
   if (!only.tiles.empty()) sheet.rows.push_back(std::move(only));
   if (differences.size() > kMostDifferences)
     sheet.note = fmt::format(
-        "{} more differences have no scenes here; --from, --to, --hand and "
-        "--of choose a part",
+        "{} more differences have no scenes here; --from, --to, --hand and --of choose a part",
         differences.size() - kMostDifferences);
   if (differences.empty()) sheet.note = AgreementText(comparison);
   if (differences.empty() && first.scenes != second.scenes) {

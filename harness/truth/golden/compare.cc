@@ -2,8 +2,7 @@
 // Names what became of each event, once the matcher has paired those of equal label. How events lie
 // to each other, where that differs from the golden. Boundaries jitter by a frame or two, and with
 // them relations like `meets`; so a relation has changed only if some boundary of one event went
-// past one of the other by more than the tolerance. Tested by
-// tests/harness/truth/golden/compare_test.cc
+// past one of the other by more than the tolerance.
 #include "harness/truth/golden/compare.h"
 
 #include <fmt/format.h>

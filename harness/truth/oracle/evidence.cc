@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/truth/oracle/oracle_test.cc
 #include "harness/truth/oracle/evidence.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/episode/run/run_text_test.cc
 #include "harness/truth/timeline/event_text.h"
 
 #include <fmt/format.h>

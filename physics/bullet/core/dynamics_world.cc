@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bullet's own list of moving bodies holds only the awake ones while it steps. Tested by
-// tests/physics/world/world_test.cc
+// Bullet's own list of moving bodies holds only the awake ones while it steps.
 #include "physics/bullet/core/dynamics_world.h"
 
 #include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>

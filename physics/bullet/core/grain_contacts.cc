@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grains are sorted by cell; the cells beside one are found by pointers that only move on. Tested
-// by tests/physics/bullet/grain_contacts_test.cc
+// Grains are sorted by cell; the cells beside one are found by pointers that only move on.
 #include "physics/bullet/core/grain_contacts.h"
 
 #include <BulletCollision/CollisionShapes/btSphereShape.h>

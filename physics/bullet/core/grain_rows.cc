@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Speeds wanted of a contact follow btSequentialImpulseConstraintSolver of Bullet 3.24 (zlib
-// licence). Tested by tests/physics/bullet/grain_contacts_test.cc
+// licence).
 #include "physics/bullet/core/grain_rows.h"
 
 #include <BulletCollision/CollisionShapes/btSphereShape.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/physics/bullet/stock_bullet_test.cc
 #include "physics/bullet/core/parts.h"
 
 #include <btBulletDynamicsCommon.h>

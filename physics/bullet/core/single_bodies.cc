@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One body per lane; the loops are in physics/bullet/lanes/kernel_loops.h. Tested by
-// tests/physics/bullet/single_bodies_test.cc
+// One body per lane; the loops are in physics/bullet/lanes/kernel_loops.h.
 #include "physics/bullet/core/single_bodies.h"
 
 #include <algorithm>

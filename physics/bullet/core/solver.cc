@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Method and order of rows: btMultiBodyConstraintSolver of Bullet 3.24 (zlib licence). Without
-// friction the results are the same, bit by bit. Tested by tests/physics/bullet/solver_test.cc
+// friction the results are the same, bit by bit.
 #include "physics/bullet/core/solver.h"
 
 #include <BulletDynamics/Featherstone/btMultiBody.h>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Method: conservative advancement (Mirtich 1996). Two bodies go on for as long as they cannot meet
-// yet, by their distance and their speeds, until they touch. Tested by
-// tests/physics/world/swept_motion_test.cc
+// yet, by their distance and their speeds, until they touch.
 #include "physics/bullet/core/swept_motion.h"
 
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
