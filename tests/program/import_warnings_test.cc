@@ -46,6 +46,25 @@ std::string SwingingMap(const char* rate_hz, const std::string& hand = "hand: tr
          hand + "size_m: [0.09, 0.08, 0.03]}\n";
 }
 
+TEST(ImportWarnings, AThingOfNoSizeAndAMapWithoutHandsAreTold) {
+  const auto folder = FreshFolder("import_warnings");
+  const auto told = [&](const std::string& map) {
+    return ImportCsv(folder, SwingingCsv(60), map, {"--check"}).err;
+  };
+  const std::string map = SwingingMap("60");
+  const std::string flat = "size_m has an edge of 0 m, and to be filled in, of 'cup': ",
+                    no_hand = "no entity is a hand (hand: true), ";
+  EXPECT_EQ(told(map).find("edge of 0"), std::string::npos);
+  EXPECT_EQ(told(map).find(no_hand), std::string::npos);
+  EXPECT_NE(told(Replaced(map, "[0.07, 0.07, 0.1]", "[0, 0, 0]")).find(flat), std::string::npos);
+  EXPECT_NE(told(Replaced(map, "[0.07, 0.07, 0.1]", "[0.07, 0.07, 0]")).find(flat),
+            std::string::npos);
+  EXPECT_EQ(told(Replaced(map, "[0.09, 0.08, 0.03]", "[0, 0, 0]")).find("edge of 0"),
+            std::string::npos)
+      << "a hand may be a point";
+  EXPECT_NE(told(SwingingMap("60", "")).find(no_hand), std::string::npos);
+}
+
 TEST(ImportWarnings, ASmoothPathDoesNotTremble) {
   const auto folder = FreshFolder("import_warnings");
   for (const char* rate_hz : {"3", "5", "15", "25", "30", "120"}) {

@@ -191,9 +191,21 @@ class Importer {
   }
 
   void WarnOfSizes() {
-    std::vector<std::string> names;
-    for (const Named<MappedEntity>& entity : map_.entities)
+    std::vector<std::string> names, flat;
+    bool has_hand = false;
+    for (const Named<MappedEntity>& entity : map_.entities) {
+      has_hand |= entity.value.hand;
       if (entity.value.guesses_size) names.push_back("'" + entity.name + "'");
+      if (!entity.value.hand && (entity.value.size_m.array() == 0).any())
+        flat.push_back("'" + entity.name + "'");
+    }
+    if (!has_hand)
+      Warn("no entity is a hand (hand: true), so nothing is reached for, grasped or moved by one");
+    if (!flat.empty())
+      Warn(
+          fmt::format("size_m has an edge of 0 m, and to be filled in, of {}: things rest on and "
+                      "touch what has a size",
+                      fmt::join(flat, ", ")));
     if (!names.empty())
       Warn(
           fmt::format("size_m is unknown, and to be filled in, of {}: a box as such things often "
