@@ -251,7 +251,8 @@ std::string Text(const GrammarDescription& description) {
   for (const LawDescription& law : description.laws) text += law.head + "\n    " + law.says + "\n";
   text += "\n";
   text += ParamsText(description.params);
-  text += "\nmemory: poses of the last " + QuantityText({description.history_s, kSeconds}) + ", " +
+  text += "\nmemory: poses of the last " +
+          QuantityText({AsWritten(description.history_s), kSeconds}) + ", " +
           std::to_string(description.bytes_per_pose) + " bytes per frame and moving entity, " +
           std::to_string(description.bytes_per_feeler) +
           " per frame and collision sphere of a hand; intervals are recent as long as " +

@@ -34,6 +34,12 @@ TEST(Describe, BoundsDecisionsAndHistory) {
   EXPECT_EQ(Find(d, "contact").watched, "pairs that touch");
 }
 
+TEST(Describe, HistoryHasTheDigitsThatWereWritten) {
+  GrammarDescription sum;
+  sum.history_s = 0.1 + 0.05;
+  EXPECT_NE(Text(sum).find("poses of the last 0.15 s, "), std::string::npos) << Text(sum);
+}
+
 // What is promised holds on the corpus: no event is decided later than its bound and the ends it
 // waits for.
 TEST(Describe, PromisesAreKeptOnTheCorpus) {
