@@ -126,7 +126,9 @@ void StepWatch::NoteFixed(std::vector<ScriptNote>& notes) const {
 }
 
 void StepWatch::SeeJoints(const Snapshot& now) {
-  for (const Leading& leading : leading_) {
+  for (Leading& leading : leading_) {
+    const bool touches = TouchesJoint(scene_, leading.hand, leading.joint, now);
+    leading.has_touched |= touches;
     if (now.tick != leading.end_tick) continue;
     const Joint& joint = scene_.joints[static_cast<std::size_t>(leading.joint)];
     const double position = now.joints[static_cast<std::size_t>(leading.joint)].position;
@@ -136,10 +138,12 @@ void StepWatch::SeeJoints(const Snapshot& now) {
       continue;
     const std::string& name = scene_.body(joint.body).name;
     const std::string remedy =
-        TouchesJoint(scene_, leading.hand, leading.joint, now)
-            ? "it touches " + name +
-                  ", which stays behind: close the hand around its handle, or take more time "
-                  "('over_s')"
+        touches ? "it touches " + name +
+                      ", which stays behind: close the hand around its handle, or take more time "
+                      "('over_s')"
+        : leading.has_touched
+            ? "it has slipped off " + name +
+                  ", which it touched on the way: take more time ('over_s'), or another style"
             : "it does not touch " + name + ": reach for its handle and 'close_to: 1' first";
     notes_.push_back({now.tick, leading.hand,
                       "follow_joint: " + name + " is at " + PositionText(joint, position) +

@@ -42,6 +42,7 @@ class StepWatch {
     int joint = 0;  ///< index into Scene::joints
     double from = 0, to = 0;
     std::int64_t end_tick = 0;
+    bool has_touched = false;  ///< what it leads
   };
   /// A thing that an arm has met.
   struct Met {

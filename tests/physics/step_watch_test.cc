@@ -50,6 +50,21 @@ TEST(StepWatch, AJointThatNothingLeadsIsNoted) {
                   "touch object: reach for its handle and 'close_to: 1' first"});
 }
 
+TEST(StepWatch, AHandThatSlipsOffIsNotToldToReach) {
+  Scene scene = OnASlider();
+  scene.joints[0].axis_W = Vector3d::UnitZ();
+  scene.joints[0].friction = 500;
+  const HandIndex hand(0);
+  const Script script{
+      .stages = {One(ReachStep{"object"}, 0.8),
+                 One(TriggerStep{1}, 0.6),
+                 {{{hand, FollowJointStep{"object", 1}, 1}, {hand, TriggerStep{0}, 0.3}}}}};
+  EXPECT_EQ(NotesOf(scene, script),
+            Texts{"hand: follow_joint: object is at 3 mm of its joint, not at 200 mm; it has "
+                  "slipped off object, which it touched on the way: take more time ('over_s'), or "
+                  "another style"});
+}
+
 TEST(StepWatch, AJointThatFollowsIsNotNoted) {
   const Script script{.stages = {One(ReachStep{"object"}, 0.8), One(TriggerStep{1}, 0.6),
                                  One(FollowJointStep{"object", 1}, 1)}};
