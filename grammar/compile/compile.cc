@@ -33,9 +33,18 @@ class Compiler {
     Read(grammar);
   }
 
-  CompileResult Run(const std::function<void(std::deque<Source>&)>& edit = {}) {
-    if (edit) edit(sources_);
-    program_.texts = std::make_shared<const ProgramTexts>(std::move(texts_));
+  /// Of a program that was compiled before: its texts as they were edited.
+  Compiler(const Program& before, std::deque<Source>& edited, const Includer& includer)
+      : includer_(includer), overrides_(before.texts->overrides), sources_(edited) {
+    program_.name = before.name;
+    program_.text_hash = before.text_hash;
+    program_.texts = before.texts;
+  }
+
+  std::deque<Source> TakeSources() { return std::move(sources_); }
+
+  CompileResult Run() {
+    if (!program_.texts) program_.texts = std::make_shared<const ProgramTexts>(std::move(texts_));
     CollectParams();
     ApplySettings();
     ApplyOverrides();
@@ -543,10 +552,11 @@ class Compiler {
 
   const Includer& includer_;
   const Overrides& overrides_;
-  const std::vector<std::string>& known_;
+  const std::vector<std::string> known_;
   Diagnostics diagnostics_;
   Diagnostics warnings_;
-  std::deque<Source> sources_;
+  std::deque<Source> read_;
+  std::deque<Source>& sources_ = read_;
   ProgramTexts texts_;
   std::set<const ast::Law*> broken_laws_;
   std::map<std::string, std::string> variants_;  // `use name from ..`: what stands for the name
@@ -566,14 +576,18 @@ CompileResult Compile(const GrammarText& grammar, const Includer& includer,
   return Compiler(grammar, includer, overrides, known).Run();
 }
 
-CompileResult Recompile(const Program& program, const Edit& edit) {
+std::deque<Source> SourcesOf(const Program& program) {
   const ProgramTexts& texts = *program.texts;
   const Includer includer = [&](std::string_view name) -> std::optional<GrammarText> {
     const auto found = texts.used.find(name);
     if (found == texts.used.end()) return std::nullopt;
     return found->second;
   };
-  return Compiler(texts.grammar, includer, texts.overrides, {}).Run(edit);
+  return Compiler(texts.grammar, includer, texts.overrides, {}).TakeSources();
+}
+
+CompileResult Recompile(const Program& program, std::deque<Source>& sources) {
+  return Compiler(program, sources, nullptr).Run();
 }
 
 }  // namespace prehend::grammar

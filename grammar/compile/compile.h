@@ -4,7 +4,6 @@
 #pragma once
 
 #include <deque>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,8 +28,9 @@ struct CompileResult {
 CompileResult Compile(const GrammarText& grammar, const Includer& includer,
                       const Overrides& overrides = {}, const std::vector<std::string>& known = {});
 
-/// Compiles the program's texts again, after this edit of their syntax trees.
-using Edit = std::function<void(std::deque<Source>&)>;
-CompileResult Recompile(const Program& program, const Edit& edit);
+/// The program's texts, read again.
+std::deque<Source> SourcesOf(const Program& program);
+/// Compiles what became of them.
+CompileResult Recompile(const Program& program, std::deque<Source>& sources);
 
 }  // namespace prehend::grammar

@@ -134,8 +134,8 @@ std::vector<FoundLimit> FindLimits(File& file, const std::set<std::string>& defi
   return found;
 }
 
-void EachExpr(const Definition& definition, const std::function<void(const Expr&)>& look) {
-  for (const Field& field : FieldsOf(const_cast<Definition&>(definition))) look(*field.expr);
+void EachExpr(Definition& definition, const std::function<void(Expr&)>& look) {
+  for (const Field& field : FieldsOf(definition)) look(*field.expr);
 }
 
 void AddNames(const Expr& expr, std::set<std::string>& names) {

@@ -26,7 +26,7 @@ struct FoundLimit {
 std::vector<FoundLimit> FindLimits(File& file, const std::set<std::string>& defines);
 
 /// Every expression of the definition, outermost only.
-void EachExpr(const Definition& definition, const std::function<void(const Expr&)>& look);
+void EachExpr(Definition& definition, const std::function<void(Expr&)>& look);
 /// What the expression calls or names, however deep.
 void AddNames(const Expr& expr, std::set<std::string>& names);
 

@@ -21,7 +21,7 @@ const Arrows& ProjectArrows() {
       {"grammar/engine", {"grammar/base", "grammar/program", "grammar/state", "grammar/values"}},
       {"grammar",
        {"grammar/analysis", "grammar/base", "grammar/compile", "grammar/drawing", "grammar/engine",
-        "grammar/program", "grammar/state"}},
+        "grammar/language", "grammar/program", "grammar/state"}},
 
       {"physics/base", {}},
       {"physics/scene", {"physics/base"}},

@@ -7,11 +7,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <set>
 #include <tuple>
 
-#include "grammar/compile/limits.h"
+#include "grammar/other_numbers.h"
 #include "harness/show/explain/query.h"
 #include "harness/show/explain/why_event.h"
 #include "harness/show/explain/why_missing.h"
@@ -329,6 +331,7 @@ std::string Table(const std::vector<WhyEvent>& events, Tick ticks_per_second) {
 
 using grammar::Limit;
 using grammar::NamedEvent;
+using grammar::OtherNumbers;
 using grammar::Program;
 
 namespace {
@@ -350,6 +353,7 @@ std::vector<double> Shares(std::size_t changes, grammar::FrameNumber frames) {
 
 /// A limit, changed down or up.
 struct Change {
+  std::size_t number = 0;
   const Limit* limit;
   bool up = false;
   /// `share` of the larger of both values.
@@ -369,16 +373,70 @@ double RoundedAway(double value, const grammar::Quantity& limit, int digits) {
 
 using IsThere = std::function<bool(const NamedEvent&)>;
 
+/// What is known of numbers without trying each. A rule has the same intervals or others, and only
+/// by them does it matter to what is made of it: so what a number brings, another one brings with
+/// which the rules that have it in their text find the same. Many of those are watched at once.
+class Sides {
+ public:
+  Sides(OtherNumbers& numbers, const Recognise& recognise)
+      : numbers_(numbers), recognise_(recognise), in_vain_(numbers.limits().size()) {
+    std::vector<OtherNumbers::Trial> as_they_are;
+    for (std::size_t i = 0; i < numbers.limits().size(); ++i)
+      as_they_are.push_back({i, numbers.limits()[i].value.value});
+    Watch(as_they_are);
+    for (const OtherNumbers::Trial& trial : as_they_are) InVain(trial);
+  }
+
+  /// Looks at these, all at once.
+  void Watch(std::span<const OtherNumbers::Trial> trials) {
+    if (trials.empty()) return;
+    const auto program = numbers_.Side(trials);
+    const auto timeline = program ? recognise_(program) : std::nullopt;
+    if (!timeline) {  // one that does not compile, or too many
+      const std::size_t half = trials.size() / 2;
+      if (half == 0) return;
+      Watch(trials.first(half));
+      return Watch(trials.subspan(half));
+    }
+    std::vector<std::string> found(trials.size());
+    for (const NamedEvent& event : timeline->events) {
+      const std::size_t ending = event.event.find('~');
+      if (ending == std::string::npos) continue;
+      found[std::stoul(event.event.substr(ending + 1))] += fmt::format(
+          "{}{} {} {} {};", event.event.substr(0, ending), event.Label().substr(event.event.size()),
+          event.interval.begin, event.interval.end, event.open_end);
+    }
+    for (std::size_t i = 0; i < trials.size(); ++i)
+      found_[{trials[i].limit, trials[i].value}] = std::move(found[i]);
+  }
+
+  /// It makes no difference, and nor does what finds the same.
+  void InVain(const OtherNumbers::Trial& trial) {
+    const auto found = found_.find({trial.limit, trial.value});
+    if (found != found_.end()) in_vain_[trial.limit].insert(found->second);
+  }
+  bool IsInVain(const OtherNumbers::Trial& trial) const {
+    const auto found = found_.find({trial.limit, trial.value});
+    return found != found_.end() && in_vain_[trial.limit].contains(found->second);
+  }
+
+ private:
+  OtherNumbers& numbers_;
+  const Recognise& recognise_;
+  std::map<std::pair<std::size_t, double>, std::string> found_;
+  std::vector<std::set<std::string>> in_vain_;  ///< by limit
+};
+
 /// `came`: the event that the decisive change brings.
 std::optional<Decisive> Search(const grammar::ReplayMonitor& past, const std::string& rule,
                                bool wanted, const Recognise& recognise, const IsThere& is_there,
                                std::optional<NamedEvent>& came) {
-  const Program& program = past.program();
-  const std::vector<Limit> limits = grammar::LimitsOf(program, rule);
+  OtherNumbers numbers(past.program(), rule);
+  const std::vector<Limit>& limits = numbers.limits();
   std::optional<NamedEvent> last;
-  const auto works = [&](const Limit& limit, double value) {
-    if (value == limit.value.value) return false;
-    const auto changed = grammar::WithLimit(program, rule, limit, value);
+  const auto works = [&](const Change& change, double value) {
+    if (value == change.limit->value.value) return false;
+    const auto changed = numbers.With(change.number, value);
     const auto timeline = changed ? recognise(changed) : std::nullopt;
     if (!timeline) return false;
     const auto there = std::ranges::find_if(timeline->events, is_there);
@@ -389,18 +447,27 @@ std::optional<Decisive> Search(const grammar::ReplayMonitor& past, const std::st
   const Change* best = nullptr;
   double least = 1;
   std::vector<Change> changes;
-  for (const Limit& limit : limits) {
-    changes.push_back({&limit, false});
-    changes.push_back({&limit, true});
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    changes.push_back({i, &limits[i], false});
+    changes.push_back({i, &limits[i], true});
   }
+  Sides sides(numbers, recognise);
   double before = 0;
   for (const double share : Shares(changes.size(), past.frames())) {
-    for (const Change& change : changes) {
-      if (!works(*change.limit, change.At(share))) continue;
+    std::vector<OtherNumbers::Trial> trials;
+    for (const Change& change : changes) trials.push_back({change.number, change.At(share)});
+    sides.Watch(trials);
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+      const Change& change = changes[i];
+      if (sides.IsInVain(trials[i])) continue;
+      if (!works(change, trials[i].value)) {
+        sides.InVain(trials[i]);
+        continue;
+      }
       double low = before, high = share;
       for (int k = 0; k < kHalvings; ++k) {
         const double middle = (low + high) / 2;
-        (works(*change.limit, change.At(middle)) ? high : low) = middle;
+        (works(change, change.At(middle)) ? high : low) = middle;
       }
       if (high >= least) continue;
       least = high;
@@ -415,7 +482,7 @@ std::optional<Decisive> Search(const grammar::ReplayMonitor& past, const std::st
   double instead = best->At(least);
   for (int digits = 12; digits > 0; digits -= 3) {
     const double rounded = RoundedAway(best->At(least), limit.value, digits);
-    if (works(limit, rounded)) instead = rounded, came = last;
+    if (works(*best, rounded)) instead = rounded, came = last;
   }
   return Decisive{.clause = limit.clause,
                   .rule = limit.owner,
