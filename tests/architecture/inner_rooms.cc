@@ -103,7 +103,7 @@ const Arrows& ProjectArrows() {
       {"harness/exchange/live",
        {"harness/episode/sense", "harness/exchange/import", "harness/exchange/poses"}},
       {"harness/show/explain",
-       {"grammar", "grammar/base", "grammar/compile", "grammar/program", "harness/base/base",
+       {"grammar", "grammar/base", "grammar/program", "harness/base/base",
         "harness/episode/episode", "harness/truth/timeline"}},
       {"harness/show/tracks",
        {"grammar", "harness/base/base", "harness/show/explain", "harness/truth/timeline"}},
