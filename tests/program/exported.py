@@ -198,6 +198,41 @@ def check_not_tracked(folder):
         said("episode", "export", rare, "--to", form, "-o", folder / f"rare.{form}")
         said("import", folder / f"rare.{form}", "--map", folder / f"rare.{form}.map.yaml", "-o", folder / "back.jsonl")
         assert resegmented(folder / "back.jsonl") == resegmented(rare), form
+    # Where nothing is lost, there is a row for each frame and none in a pause of all.
+    pause = folder / "pause.jsonl"
+    lines = take("seen", {})[0].read_text(encoding="utf-8").splitlines()
+    pause.write_text("\n".join(line for k, line in enumerate(lines) if not (90 <= k < 93 or 95 <= k < 110)), encoding="utf-8")
+    for form in ("csv", "npz", "mcap"):
+        told = said("episode", "export", pause, "--to", form, "-o", folder / f"pause.{form}")
+        assert "222 frames" in told, told
+        said("import", folder / f"pause.{form}", "--map", folder / f"pause.{form}.map.yaml", "-o", folder / "back.jsonl")
+        ticks = [[json.loads(line)["tick"] for line in open(file, encoding="utf-8") if '"tick"' in line] for file in (pause, folder / "back.jsonl")]
+        seconds = [json.loads(open(file, encoding="utf-8").readline())["ticks_per_second"] for file in (pause, folder / "back.jsonl")]
+        assert np.allclose(*[np.array(of) / per for of, per in zip(ticks, seconds)], atol=1e-9), form
+        assert resegmented(folder / "back.jsonl") == resegmented(pause), form
+    # What is lost in an episode file is lost as long in what is written of it.
+    lost = take("lost", {"cup": (2.6, 3.4)})[0]
+    said("episode", "export", lost, "--to", "csv", "-o", folder / "l.csv")
+    said("import", folder / "l.csv", "--map", folder / "l.csv.map.yaml", "-o", folder / "l.episodes")
+    for form in ("jsonl", "csv", "npz", "mcap"):
+        made = folder / f"l2.{form}"
+        said("episode", "export", folder / "l.episodes", "--to", form, "-o", made)
+        if form != "jsonl":
+            said("import", made, "--map", f"{made}.map.yaml", "-o", folder / "l3.jsonl")
+            made = folder / "l3.jsonl"
+        assert resegmented(made) == resegmented(lost), form
+    # A part stays one.
+    whole = json.loads(lines[0])
+    whole["entities"]["lid"] = {"class": "Lid", "part_of": "cup", "attached": True, "size_m": [0.05, 0.05, 0.01]}
+    frames = [json.loads(line) for line in lines[1:]]
+    for frame in frames[:-1]:
+        frame["samples"]["lid"] = {"at_m": [*frame["samples"]["cup"]["at_m"][:2], frame["samples"]["cup"]["at_m"][2] + 0.05]}
+    part = folder / "part.jsonl"
+    part.write_text("\n".join(json.dumps(line) for line in [whole, *frames]), encoding="utf-8")
+    for form in ("csv", "npz", "mcap"):
+        said("episode", "export", part, "--to", form, "-o", folder / f"part.{form}")
+        said("import", folder / f"part.{form}", "--map", folder / f"part.{form}.map.yaml", "-o", folder / "back.jsonl")
+        assert json.loads(open(folder / "back.jsonl", encoding="utf-8").readline())["entities"]["lid"]["part_of"] == "cup", form
     # What the map cannot say is a comment.
     (folder / "own.grammar").write_text("grammar own\nuse contact from motion\n", encoding="utf-8")
     said("episode", "export", rare, "--to", "csv", "-o", folder / "r.csv", "--grammar", folder / "own.grammar")

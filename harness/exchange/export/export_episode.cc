@@ -198,12 +198,8 @@ Result<Motion> Motion::Of(episode::Episode& episode, const episode::GrammarChoic
 void Motion::LookAtAll() {
   header = episode_->Header();
   bridge_s = header.bridge_s;
-  if (const episode::Recording* recording = episode_->recording()) {
+  if (const episode::Recording* recording = episode_->recording())
     says_its_end = recording->says_its_end;
-    // Looks that were missing for a short time stand in the frames, and count as they are.
-    const auto has_gaps = [](const episode::LookGaps& gaps) { return gaps.gaps > 0; };
-    if (std::ranges::any_of(recording->gaps, has_gaps)) header.bridge_s = 0;
-  }
   for (const grammar::EntityInfo& entity : table().entities)
     seen.push_back({.has_joint = std::ranges::count(entity.classes, "Jointed") > 0});
   std::vector<grammar::Tick> steps;
@@ -214,7 +210,10 @@ void Motion::LookAtAll() {
     for (std::size_t i = 0; i < frame.entities.size(); ++i) {
       const grammar::EntitySample& look = frame.entities[i];
       Seen& of = seen[i];
-      if (!grammar::IsTracked(look)) continue;
+      if (!grammar::IsTracked(look)) {
+        header.bridge_s = 0;  // short losses stand in the frames, and what is lost counts as it is
+        continue;
+      }
       of.has_joint = of.has_joint || look.joint_position != 0 || look.joint_fraction != 0;
       if (of.looks++ == 0) of.first = of.shut = of.open = look;
       if (look.joint_fraction < of.shut.joint_fraction) of.shut = look;
@@ -238,27 +237,31 @@ void Motion::LookAtAll() {
 void Motion::JudgeSteps(std::vector<grammar::Tick> steps, grammar::Tick to_end) {
   const double ticks_per_s = static_cast<double>(table().ticks_per_second),
                bridge = bridge_s * ticks_per_s;
+  const bool all_seen =
+      std::ranges::all_of(seen, [&](const Seen& of) { return of.looks == frames; });
   const grammar::Tick usual = Median(steps);
+  const auto is_long = [&](grammar::Tick step) {
+    return static_cast<double>(step) > kLong * static_cast<double>(usual);
+  };
+  repeats_end_ = is_long(to_end);
   steps.push_back(to_end);
-  double bridged = 0;
+  double bridged = header.bridge_s;
   for (const grammar::Tick step : steps) {
-    const auto ticks = static_cast<double>(step);
-    if (ticks <= kLong * static_cast<double>(usual)) continue;
-    if (ticks <= bridge)
-      bridged = std::max(bridged, ticks);
+    if (!is_long(step)) continue;
+    if (all_seen || static_cast<double>(step) <= bridge)
+      bridged = std::max(bridged, static_cast<double>(step) / ticks_per_s);
     else
       row_ticks_ = usual;
   }
-  if (header.bridge_s == 0) bridge_s = bridged / ticks_per_s;
+  bridge_s = bridged;
 }
 
 void Motion::EachRow(const Look& look) const {
-  if (row_ticks_ == 0) return EachFrame(look);
   grammar::Tick tick = 0;
   std::vector<grammar::EntitySample> entities;
   std::vector<grammar::HandSample> hands;
   const auto repeat = [&](grammar::Tick end) {
-    while (!entities.empty() && tick + row_ticks_ < end)
+    while (row_ticks_ > 0 && !entities.empty() && tick + row_ticks_ < end)
       look({.tick = tick += row_ticks_, .entities = entities, .hands = hands, .touches = {}});
   };
   EachFrame([&](const grammar::Frame& frame) {
@@ -269,6 +272,8 @@ void Motion::EachRow(const Look& look) const {
     hands.assign(frame.hands.begin(), frame.hands.end());
   });
   repeat(end_tick);
+  if (repeats_end_ && !entities.empty() && tick + 1 < end_tick)
+    look({.tick = end_tick - 1, .entities = entities, .hands = hands, .touches = {}});
 }
 
 void Motion::EachFrame(const Look& look) const { episode_->EachFrame(look); }
@@ -375,9 +380,12 @@ std::string MapText(const Motion& motion, const std::string& ending) {
   else
     text += "mcap: {clock: log, world: " + quoted(WorldName(motion.table())) + "}\n";
   text += GrammarOf(motion) + "entities:\n";
+  const auto is_mapped = [&](std::size_t i) {
+    return IsTrackerBody(motion.table().entities[i]) && motion.seen[i].looks >= 2;
+  };
   for (std::size_t i = 0; i < motion.seen.size(); ++i) {
     const grammar::EntityInfo& entity = motion.table().entities[i];
-    if (!IsTrackerBody(entity) || motion.seen[i].looks < 2) continue;
+    if (!is_mapped(i)) continue;
     const std::string& own = entity.classes.front();
     const std::string at =
         ending == ".npz"
@@ -394,6 +402,10 @@ std::string MapText(const Motion& motion, const std::string& ending) {
     if (!motion.seen[i].has_joint &&
         std::ranges::find(entity.classes, "Fixed") != entity.classes.end())
       text += ", fixed: true";
+    const int whole = entity.part_of;
+    if (std::ranges::count(entity.classes, "Attached") > 0 && whole != grammar::kNoEntity &&
+        is_mapped(static_cast<std::size_t>(whole)))
+      text += ", part_of: " + quoted(motion.table().entities[whole].name);
     const auto element = [&](const char* of, const std::string& which) {
       return quoted(fmt::format("{}[{}]", of, which));
     };

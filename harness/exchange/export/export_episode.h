@@ -48,7 +48,8 @@ class Motion {
 
   using Look = std::function<void(const grammar::Frame&)>;
   void EachFrame(const Look& look) const;
-  /// The same, and where frames are rare the last one again: a table says what it mentions only.
+  /// The same, and at its end the last one again if that lasts. A pause has no rows, but where
+  /// something is lost: then the last one again, as a table says what it mentions only.
   void EachRow(const Look& look) const;
 
   const grammar::EntityTable& table() const { return header.entity_table; }
@@ -88,7 +89,8 @@ class Motion {
   /// `steps`: from frame to frame.
   void JudgeSteps(std::vector<grammar::Tick> steps, grammar::Tick to_end);
   episode::Episode* episode_;
-  grammar::Tick row_ticks_ = 0;  ///< between two rows where frames are rare; 0: they are not
+  grammar::Tick row_ticks_ = 0;  ///< between two rows in a pause; 0: it has none
+  bool repeats_end_ = false;
 };
 
 // Motion in the formats of other programs (docs/episodes.md).
