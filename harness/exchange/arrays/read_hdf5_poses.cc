@@ -68,6 +68,8 @@ std::optional<Hdf5Value> ValueOf(const Hdf5File& file, const std::string& group,
   std::optional<Hdf5Value> value;
   if (key->value.starts_with('@')) {
     value = file.Attribute(group, key->value.substr(1));
+  } else if (auto text = file.LastText(group + "/" + key->value)) {
+    value = std::move(*text);
   } else if (const auto read = file.Read(group + "/" + key->value); read && !read->empty()) {
     value = read->back();
   }

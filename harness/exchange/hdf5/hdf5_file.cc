@@ -189,11 +189,13 @@ Hdf5Object ObjectOf(hid_t dataset) {
           .is_unsigned = KindOf(type) == Hdf5Kind::kInteger && H5Tget_sign(type) == H5T_SGN_NONE};
 }
 
-std::string TextIn(hid_t attribute, hid_t type) {
+/// `read`: one text of `type`, as H5Aread does.
+template <typename Read>
+std::string TextIn(hid_t type, const Read& read) {
   const Hdf5Id memory(H5Tcopy(type));
   if (H5Tis_variable_str(type) > 0) {
     char* text = nullptr;
-    if (H5Aread(attribute, memory, &text) < 0 || !text) return "";
+    if (read(memory, &text) < 0 || !text) return "";
     const std::string copy(text, strnlen(text, kMostHdf5TextBytes));
     H5free_memory(text);
     return copy;
@@ -201,7 +203,7 @@ std::string TextIn(hid_t attribute, hid_t type) {
   const std::size_t size = H5Tget_size(type);
   if (size > kMostHdf5TextBytes) return "";
   std::string text(size, '\0');
-  if (H5Aread(attribute, memory, text.data()) < 0) return "";
+  if (read(memory, text.data()) < 0) return "";
   return text.substr(0, text.find('\0'));
 }
 
@@ -373,7 +375,8 @@ std::optional<Hdf5Value> Hdf5File::Attribute(const std::string& path,
   const Hdf5Id type(H5Aget_type(attribute)), space(H5Aget_space(attribute));
   if (!type || !space || H5Sget_simple_extent_npoints(space) != 1) return std::nullopt;
   const Hdf5Kind kind = KindOf(type);
-  if (kind == Hdf5Kind::kText) return TextIn(attribute, type);
+  if (kind == Hdf5Kind::kText)
+    return TextIn(type, [&](hid_t as, void* to) { return H5Aread(attribute, as, to); });
   std::int8_t flag = 0;
   double value = 0;
   const bool is_bool = kind == Hdf5Kind::kBool;
@@ -382,6 +385,24 @@ std::optional<Hdf5Value> Hdf5File::Attribute(const std::string& path,
       0)
     return std::nullopt;
   return is_bool ? flag : value;
+}
+
+std::optional<std::string> Hdf5File::LastText(const std::string& path) const {
+  const WithinTime within_time;
+  const Result<Hdf5Id> dataset = OpenObject(path);
+  if (!dataset || H5Iget_type(*dataset) != H5I_DATASET) return std::nullopt;
+  const Hdf5Object object = ObjectOf(*dataset);
+  if (object.kind != Hdf5Kind::kText || object.Rows() * object.Width() == 0 ||
+      !ChunkProblem(*dataset, object).empty())
+    return std::nullopt;
+  const Hdf5Id type(H5Dget_type(*dataset)), last(H5Dget_space(*dataset)),
+      one(H5Screate(H5S_SCALAR));
+  std::vector<hsize_t> at(object.shape.begin(), object.shape.end());
+  for (hsize_t& of : at) --of;
+  if (!at.empty() && H5Sselect_elements(last, H5S_SELECT_SET, 1, at.data()) < 0)
+    return std::nullopt;
+  return TextIn(
+      type, [&](hid_t as, void* to) { return H5Dread(*dataset, as, one, last, H5P_DEFAULT, to); });
 }
 
 Result<std::vector<double>> Hdf5File::Read(const std::string& path, const Hdf5Part& part) const {

@@ -83,6 +83,8 @@ class Hdf5File {
   Result<std::vector<std::string>> NamesIn(const std::string& group) const;
   /// A number, a truth value or a text; none if the attribute is not there or is something else.
   std::optional<Hdf5Value> Attribute(const std::string& object, const std::string& name) const;
+  /// The only or the last one of a dataset of texts.
+  std::optional<std::string> LastText(const std::string& dataset) const;
   /// Row after row. `part`: its columns.
   Result<std::vector<double>> Read(const std::string& dataset, const Hdf5Part& part = {}) const;
 
