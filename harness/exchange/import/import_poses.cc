@@ -368,7 +368,11 @@ class Importer {
         fmt::format("'{}' {} for {:.3f} s from {:.3f} s on; in all {}, {:.3f} s", report.from,
                     of_opening ? "has no value" : "is not tracked", longest_s, longest_from_s,
                     grammar::CountOf(report.lost, "such time"), report.lost_s);
-    if (of_opening && map_.lost != Lost::kRefuse) return Warn(text + ": it stays as it was");
+    if (of_opening && map_.lost != Lost::kRefuse)
+      return Warn(text + (track.lost_before ? ": before its first value that one counts" : "") +
+                  (track.lost_before && report.lost == 1 ? ""
+                   : track.lost_before                   ? "; later it stays as it was"
+                                                         : ": it stays as it was"));
     if (map_.lost == Lost::kHold) return Warn(text + ": it is held where it was, at rest");
     if (map_.lost == Lost::kUnknown) return Warn(text + ": nobody knows where it is");
     errors_.Add(where, text,

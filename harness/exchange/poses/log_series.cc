@@ -110,10 +110,9 @@ LogSeries::LogSeries(const ImportMap& map, std::uint64_t file_bytes)
 
 void LogSeries::TakeChannel(const LogChannel& channel) {
   std::string why;
-  Source source{.reader = readers_.Of(channel, why)};
   const bool is_known = topics.contains(channel.topic);
   LogTopic& topic = topics[channel.topic];
-  source.topic = &topic;
+  Source source{.reader = readers_.Of(channel, why), .topic = &topic};
   if (topic.reader && source.reader)
     source.other_type = topic.reader->fields() != source.reader->fields();
   if (!is_known || (!topic.reader && source.reader)) {
@@ -162,6 +161,7 @@ std::string LogSeries::TakeOpenings(const LogMessage& message, const Source& sou
       if (!why.empty()) return why;
     }
     if (numbers.size() < opening.addresses.size()) continue;  // of other joints
+    source.topic->lacks_times |= !stamp_ns;
     opening.numbers.insert_or_assign(TimeOf(message, stamp_ns), std::move(numbers));
     if (++poses_ > most_poses_) return "too many values of grips and joints";
   }

@@ -78,7 +78,7 @@ struct LogTopic {
   /// Fields and keys of bodies, not all of very many.
   std::set<std::pair<std::size_t, std::vector<std::string>>> seen;
   std::size_t looked_at = 0;  ///< poses
-  bool lacks_times = false;   ///< of poses that were asked for
+  bool lacks_times = false;   ///< of what was asked for
 
   /// Bodies that could be asked for, as a map names them; positions only if there are no poses.
   std::vector<std::string> Names(const std::string& topic, bool unasked_only) const;
