@@ -127,7 +127,7 @@ class FactsJudge {
       case Fact::kOrientations:
         return facts_.orientations ? "" : "orientations";
       case Fact::kGrips:
-        return facts_.grips ? "" : "grips";
+        return facts_.grips ? "" : "closed grips";
       case Fact::kGazes:
         return facts_.gazes ? "" : "gazes";
     }
@@ -162,13 +162,16 @@ class FactsJudge {
 
 }  // namespace
 
+/// Less is an open hand, whose number was rounded.
+constexpr double kClosing = 0.001;
+
 void FactsOfEpisode::Add(const Frame& frame, const EntityTable& entities) {
   touches = touches || !frame.touches.empty();
   for (const Touch& touch : frame.touches) {
     sensor_sets = sensor_sets || touch.sensor_sets != 0;
     forces = forces || touch.normal_force_n != 0;
   }
-  for (const HandSample& hand : frame.hands) grips = grips || hand.trigger > 0;
+  for (const HandSample& hand : frame.hands) grips = grips || hand.trigger > kClosing;
   for (const EntitySample& look : frame.entities) gazes = gazes || look.gazes_at != kNoEntity;
   for (std::size_t i = 0; i < frame.entities.size() && !orientations; ++i) {
     const auto& classes = entities.entities[i].classes;

@@ -29,7 +29,7 @@ struct NeverRecognised {
   std::string event;
   std::string file;
   Place place;
-  std::string_view fact;  ///< "touches", "sensor sets", "grips", "gazes", "forces",
+  std::string_view fact;  ///< "touches", "sensor sets", "closed grips", "gazes", "forces",
                           ///< "orientations"
 };
 

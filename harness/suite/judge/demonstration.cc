@@ -132,9 +132,10 @@ class Reader {
     read_.end = recording.end_tick;
   }
 
-  Demonstration Read() {
+  Demonstration Read(bool closes) {
     ReadHandlings();
-    for (const Handling& handling : read_.handled) LookAtEnd(handling);
+    for (const Handling& handling : read_.handled)
+      if (closes) LookAtEnd(handling);
     for (const Pair& support : supports_) LookAtSupport(support);
     for (const auto& entity : recording_.header.entity_table.entities) LookForMisses(entity);
     std::ranges::stable_sort(read_.mishaps, {}, &Mishap::tick);
@@ -343,12 +344,12 @@ std::optional<Demonstration> DemonstrationOf(episode::Recording& recording,
   bool has_gripper = false;
   recording.EachFrame([&](const auto& frame) {
     has_gripper = has_gripper || std::ranges::any_of(frame.hands, [](const auto& hand) {
-                    return hand.trigger > 0;
+                    return hand.trigger > kOpened;
                   });
   });
-  if (!has_gripper) return std::nullopt;
+  if (!has_gripper && recording.header.attributes.success.value_or(true)) return std::nullopt;
   recording.Keep();
-  return Reader(recording, timeline, drawings).Read();
+  return Reader(recording, timeline, drawings).Read(has_gripper);
 }
 
 std::vector<std::optional<Mishap>> FirstCauses(const std::vector<const Demonstration*>& all) {

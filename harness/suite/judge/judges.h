@@ -308,7 +308,8 @@ struct Demonstration {
   std::vector<Mishap> mishaps;    ///< by tick
 };
 
-/// Nothing if no gripper ever closes in it. What grasps and supports are say `drawings`.
+/// Nothing if no gripper ever closes in it, and nobody says that it failed. What grasps and
+/// supports are say `drawings`.
 std::optional<Demonstration> DemonstrationOf(episode::Recording& recording,
                                              const grammar::Timeline& timeline,
                                              const truth::EventDrawings& drawings);
