@@ -61,6 +61,18 @@ class GrammarCoverage : public testing::Test {
   std::filesystem::path folder;
 };
 
+// Up for 0.1 s, thrice with gaps of 0.1 s, and twice: 'at least 3' decides both ways.
+TEST_F(GrammarCoverage, OfASeriesHasItsGapAndItsNumber) {
+  WriteFile(folder / "shelf.grammar",
+            "grammar shelf\nevent raised(a: Movable) while height(a) > 10 cm\n"
+            "event knocking(a: Movable) repeat raised(a) at least 3, gap at most 0.15 s\n");
+  const std::string file = Kept("a.jsonl", {0, 1, 0, 1, 0, 1, 0, 0, 0, 1, 0, 1, 0});
+  const Json coverage = Json::parse(Covered({file, "--json"}).out);
+  EXPECT_EQ(ClauseOf(coverage, "at least", "3")["all"]["decided"], (Json{1, 1}));
+  EXPECT_EQ(ClauseOf(coverage, "gap at most", "150 ms")["all"]["decided"], (Json{1, 3}));
+  EXPECT_EQ(coverage["clauses"].size(), 3U) << coverage["clauses"];
+}
+
 TEST_F(GrammarCoverage, SaysWhichClausesDecidedAndHowNear) {
   const std::string file = Kept("a.jsonl", {0.04, 0.5, 0.5, 0.5, 0.07, 0.5, 0.07});
   const Said said = Covered({file, "--json"});

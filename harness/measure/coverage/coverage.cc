@@ -135,7 +135,7 @@ class Collector {
   }
   void List() {
     if (const auto* rule = rule_->If<grammar::WhileRule>()) {
-      List(rule->condition, "while");
+      if (rule->at_least == 0) List(rule->condition, "while");  // else the compiler makes it
       List(rule->until, "until");
     } else if (const auto* from_to = rule_->If<grammar::FromToRule>()) {
       List(from_to->from, "from");
@@ -183,7 +183,6 @@ class Collector {
 
   void LookAtWhile(InstanceId instance, const grammar::CandidateLog& outcomes) {
     const auto& rule = rule_->As<grammar::WhileRule>();
-    if (rule.at_least > 0) return;  // its condition is made by the compiler
     const bool stays = rule.until != kNone;
     FrameNumber next = 0, gap_from = 0;
     const auto outside = [&](FrameNumber end) {
@@ -192,6 +191,8 @@ class Collector {
     };
     for (const CandidateOutcome& outcome : outcomes) {
       const FrameNumber begin = outcome.span.begin.frame, end = outcome.span.end.frame;
+      if (rule.bridging_s > 0) Bridge(rule, instance, outcome, gap_from);
+      if (rule.at_least > 0) continue;
       outside(begin + 1);
       Turn(rule.condition, {.instance = instance, .frame = begin, .begin = begin}, true);
       for (; stays && next < std::min(end + 1, past_.frames()); ++next)
@@ -199,15 +200,17 @@ class Collector {
       if (end < past_.frames())
         Turn(stays ? rule.until : rule.condition,
              {.instance = instance, .frame = end, .begin = begin}, stays);
-      if (rule.bridging_s > 0) Bridge(rule, instance, outcome, gap_from);
     }
-    outside(past_.frames());
+    if (rule.at_least == 0) outside(past_.frames());
   }
 
+  static const char* GapName(const grammar::WhileRule& rule) {
+    return rule.at_least > 0 ? "gap at most" : "bridging";
+  }
   /// Gaps within an interval were bridged, those between two were not.
   void Bridge(const grammar::WhileRule& rule, InstanceId instance, const CandidateOutcome& outcome,
               FrameNumber& gap_from) {
-    Clause& bridging = Whole("bridging", rule.bridging_s);
+    Clause& bridging = Whole(GapName(rule), rule.bridging_s);
     const auto add = [&](bool bridged, FrameNumber from, FrameNumber to) {
       const double gap_s = clauses_.Seconds(past_.TickOf(to) - past_.TickOf(from));
       bridging.seen[0].Add(bridged, std::abs(gap_s - rule.bridging_s));
@@ -282,20 +285,21 @@ class Collector {
     if (rule.approach->idle_s >= 0) stops("slower than", "", rule.approach->idle_s, Stop::kIdle);
   }
 
+  void CountRepeats(int at_least, const grammar::CandidateLog& outcomes) {
+    Clause& count = Whole("at least", kNoLimit, std::to_string(at_least));
+    count.is_threshold = true;
+    for (const CandidateOutcome& outcome : outcomes) {
+      const auto* few = outcome.If<fate::TooFew>();
+      count.seen[0].Add(few == nullptr, few == nullptr ? 0 : at_least - few->found);
+    }
+  }
   /// Pairs of intervals of the parts, as they lie to each other.
   void LookAtParts(InstanceId instance, const grammar::CandidateLog& outcomes) {
     const auto& rule = rule_->As<grammar::ComposeRule>();
     const auto name = [&](int part) {
       return past_.program().rules[rule_->references[rule.parts[part]].rule].name;
     };
-    if (rule.at_least > 0) {
-      Clause& count = Whole("at least", kNoLimit, std::to_string(rule.at_least));
-      count.is_threshold = true;
-      for (const CandidateOutcome& outcome : outcomes) {
-        const auto* few = outcome.If<fate::TooFew>();
-        count.seen[0].Add(few == nullptr, few == nullptr ? 0 : rule.at_least - few->found);
-      }
-    }
+    if (rule.at_least > 0) CountRepeats(rule.at_least, outcomes);
     for (const grammar::ComposeRule::Clause& clause : rule.clauses) {
       const grammar::Relations relations =
           clause.In([this](double seconds) { return past_.AtMostTicks(seconds); });
@@ -344,8 +348,10 @@ class Collector {
           clause.seen[0].Add(!fails, std::abs(length_s(one) - limit_s));
       }
     };
-    if (const auto* rule = rule_->If<grammar::WhileRule>(); rule != nullptr && rule->bridging_s > 0)
-      Whole("bridging", rule->bridging_s);
+    if (const auto* rule = rule_->If<grammar::WhileRule>()) {
+      if (rule->at_least > 0) CountRepeats(rule->at_least, outcomes);
+      if (rule->bridging_s > 0) Whole(GapName(*rule), rule->bridging_s);
+    }
     if (rule_->lasting_s > 0) lasts("lasting", rule_->lasting_s, fate::TooShort{});
     if (rule_->lasting_most_s >= 0) lasts("lasting .. to", rule_->lasting_most_s, fate::TooLong{});
     if (const auto* rule = rule_->If<grammar::FromToRule>(); rule != nullptr && rule->within_s >= 0)
