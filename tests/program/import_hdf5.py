@@ -290,6 +290,24 @@ text: {grasp_1: "grasp the red cube", stack_1: "put it on the blue cube", rest: 
     check(done.returncode == 0, "no first: " + done.stderr)
 
 
+def test_language(folder):
+    """A text of a dataset, of which the last value counts, in each form that h5py writes."""
+    words = "move the carton"
+    forms = {"scalar": words, "fixed": np.bytes_(words.encode()), "rows": np.array([b"wait", words.encode()]),
+             "texts": np.array(["wait", words], dtype=h5py.string_dtype())}
+    text = made.MAPS["mimicgen"].replace("data/*", "data/demo_0")
+    if "data/demo_0" not in text:
+        text = text.replace("hdf5: {", 'hdf5: {episodes: "data/demo_0", ')
+    for form, value in forms.items():
+        path = os.path.join(folder, "language_%s.hdf5" % form)
+        shutil.copy(os.path.join(folder, "mimicgen.hdf5"), path)
+        with h5py.File(path, "r+") as file:
+            file["data/demo_0/told"] = value
+        done = imported(path, text.replace("hdf5: {", "hdf5: {language: told, "), folder)
+        check(done.returncode == 0, form + ": " + done.stderr)
+        check(done.stdout and json.loads(done.stdout.splitlines()[0]).get("language") == words, form + ": language")
+
+
 def test_proposals(folder):
     """What --check proposes is a map that works; only the order of quaternions may have to be corrected."""
     for name in made.MAPS:
@@ -350,6 +368,7 @@ def main():
         test_formats(folder, demos)
         test_faults(folder, demos)
         test_all_keys(folder, demos)
+        test_language(folder)
         test_proposals(folder)
         test_damage(folder, damaged, demos)
     sys.exit(1 if failures else 0)
