@@ -229,6 +229,7 @@ const Arrows& ProjectArrows() {
         "harness/show/pictures",
         "harness/show/tracks",
         "harness/suite/check",
+        "harness/suite/judge",
         "harness/truth/golden",
         "harness/truth/timeline"}},
       {"harness/cli/cli", {"harness/base/base", "harness/cli/command"}},

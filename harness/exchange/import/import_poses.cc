@@ -24,11 +24,9 @@ namespace {
 
 constexpr double kGap = 1.5;         ///< of the usual step: longer is a gap
 constexpr double kFarthest_m = 1e4;  ///< of the recording format
-constexpr double kUnmoved_m = 0.001;
+constexpr double kUnmoved_m = 0.001, kSmoothedOff_m = 0.02, kFixedMoves_m = 0.03;
 constexpr double kTrembles_m = 0.0008;  ///< more than this hides how things move
 constexpr double kMostTrembling_m = 0.5, kTrembleRate_hz = 8;  ///< fewer poses: it is motion
-constexpr double kSmoothedOff_m = 0.02;
-constexpr double kFixedMoves_m = 0.03;
 
 Eigen::Quaterniond Quaternion(const Eigen::Vector4d& wxyz) {
   return Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();

@@ -141,10 +141,9 @@ std::optional<grammar::Diagnostics> UnknownAmong(const std::vector<std::string>&
   for (const grammar::ProgramParam& param : params) known.push_back(param.name);
   for (const std::string& name : names) {
     if (std::ranges::count(known, name) > 0) continue;
-    return grammar::Diagnostics{
-        {.file = "--over",
-         .message = fmt::format("the grammar has no parameter '{}'", name),
-         .hint = grammar::DidYouMean(name, known)}};
+    return grammar::Diagnostics{{.file = "--over",
+                                 .message = fmt::format("the grammar has no parameter '{}'", name),
+                                 .hint = grammar::DidYouMean(name, known)}};
   }
   return std::nullopt;
 }
