@@ -74,11 +74,11 @@ Moment Engine::BeginsFrom(const RuleInstance& instance) const {
   if (finishing_) return {kNever, kLatestTick + 1};
   if (RuleOf(instance).form() == Form::kCompose) {
     Moment from = PartsBeginFrom(instance.rule, instance.entities);
-    for (std::size_t part = 0; part < RuleOf(instance).As<ComposeRule>().may_begin(); ++part) {
-      const std::vector<Span>& spans = instance.As<ComposeState>().parts[part];
-      for (const Span& span : spans) {
+    const auto& rule = RuleOf(instance).As<ComposeRule>();
+    for (std::size_t part = 0; part < rule.may_begin(); ++part) {
+      for (const Span& span : instance.As<ComposeState>().parts[part]) {
         from = Earlier(from, span.begin);
-        if (!RuleOf(instance).As<ComposeRule>().has_choices) break;
+        if (!rule.has_choices) break;
       }
     }
     return from;

@@ -74,9 +74,7 @@ Kleene Evaluator::Truth(NodeId index, const View& view) const {
       if (!IsTracked(Entity(node, view, 0), view.frame) ||
           !IsTracked(Entity(node, view, 1), view.frame))
         return Known(view.negated);
-      return Known(node.op == Op::kInside
-                       ? IsInside(Entity(node, view, 0), Entity(node, view, 1), view.frame)
-                       : IsNearest(node, view));
+      return Known(node.op == Op::kInside ? IsInside(node, view) : IsNearest(node, view));
     case Op::kOwns:
       return Owns(node, view);
     case Op::kPartOf:

@@ -125,7 +125,7 @@ class Evaluator {
   bool SensorSet(const Node& node, const View& view) const;
   bool HasCentreOf(int room, int who, FrameNumber frame) const;
   double LowestPoint_m(int entity, FrameNumber frame) const;
-  bool IsInside(int who, int room, FrameNumber frame) const;
+  bool IsInside(const Node& node, const View& view) const;
   bool IsNearest(const Node& node, const View& view) const;
   double Weight(int entity) const;
   /// How something lies to a part of something else.

@@ -41,7 +41,9 @@ double Evaluator::LowestPoint_m(int entity, FrameNumber frame) const {
 
 // Of two things that have each other's centre, the lower one is round the other, as a cup is round
 // a bottle.
-bool Evaluator::IsInside(int who, int room, FrameNumber frame) const {
+bool Evaluator::IsInside(const Node& node, const View& view) const {
+  const int who = Entity(node, view, 0), room = Entity(node, view, 1);
+  const FrameNumber frame = view.frame;
   if (!HasCentreOf(room, who, frame)) return false;
   return !HasCentreOf(who, room, frame) || !instances_.IsA(who, "Thing") ||
          !instances_.IsA(room, "Thing") || LowestPoint_m(who, frame) >= LowestPoint_m(room, frame);
