@@ -166,8 +166,13 @@ class Compiler {
   // after them, so its word is the last.
   void ApplySettings() {
     for (const Source& source : sources_) {
+      std::set<std::string> names;
       for (const ast::Use& use : source.file.uses) {
-        for (const ast::Param& setting : use.settings) ApplySetting(source, setting);
+        for (const ast::Param& setting : use.settings) {
+          ApplySetting(source, setting);
+          if (!names.insert(setting.name).second)
+            Complain(source, setting.place, "'" + setting.name + "' is set twice in this file");
+        }
       }
     }
   }

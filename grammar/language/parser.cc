@@ -230,6 +230,9 @@ class Parser : public LawParser {
     definition.during = ParseExpr();
     definition.or_drop = AtOrDrop();
     if (!definition.or_drop) return;
+    if (definition.absence)
+      Complain(Peek().place, "'or drop' belongs to 'from .. to'",
+               "what does not hold 'during' an absence drops it always");
     SkipOne();
     SkipOne();
   }

@@ -335,7 +335,7 @@ class Writer {
                  : rule.form == Form::kWithout ? " within " + at_least(rule.within)
                                                : " within " + at_most(rule.within)) +
                 (rule.has_during ? " during " + TermText(rule.during) : "") +
-                (rule.or_drop ? " or drop" : "");
+                (rule.or_drop && rule.form == Form::kFromTo ? " or drop" : "");
         break;
       case Form::kUntil:
         text += " until " + TermText(rule.first) + " since " + TermText(rule.second) +
