@@ -124,7 +124,6 @@ class Evaluator {
   double SurfaceSpeed(int hand, FrameNumber frame) const;
   bool SensorSet(const Node& node, const View& view) const;
   bool HasCentreOf(int room, int who, FrameNumber frame) const;
-  double LowestPoint_m(int entity, FrameNumber frame) const;
   bool IsInside(const Node& node, const View& view) const;
   bool IsNearest(const Node& node, const View& view) const;
   double Weight(int entity) const;

@@ -31,22 +31,28 @@ bool Evaluator::HasCentreOf(int room, int who, FrameNumber frame) const {
   return (away_m.cwiseAbs().array() <= of.half_size_m.array()).all();
 }
 
-// Of its box.
-double Evaluator::LowestPoint_m(int entity, FrameNumber frame) const {
-  const EntityInfo& of = entity_table_.entities[static_cast<std::size_t>(entity)];
-  const EntitySample& look = history_.Look(entity, frame);
-  const Vector3d up_B = look.q_WB.conjugate() * Vector3d::UnitZ();
-  return look.p_WB_m.z() + up_B.dot(of.p_BC_m) - up_B.cwiseAbs().dot(of.half_size_m);
+namespace {
+
+/// Neither the longest nor the shortest one, as the width of a bottle and of a bowl.
+double MiddleEdge(const Vector3d& edges) {
+  return edges.sum() - edges.maxCoeff() - edges.minCoeff();
 }
 
-// Of two things that have each other's centre, the lower one is round the other, as a cup is round
-// a bottle.
+}  // namespace
+
+// Of two things that have each other's centre, one is round the other, as a cup is round a bottle:
+// the wider one, however they are turned; of equals, as of nested cups, the lower one.
 bool Evaluator::IsInside(const Node& node, const View& view) const {
   const int who = Entity(node, view, 0), room = Entity(node, view, 1);
-  const FrameNumber frame = view.frame;
-  if (!HasCentreOf(room, who, frame)) return false;
-  return !HasCentreOf(who, room, frame) || !instances_.IsA(who, "Thing") ||
-         !instances_.IsA(room, "Thing") || LowestPoint_m(who, frame) >= LowestPoint_m(room, frame);
+  if (!HasCentreOf(room, who, view.frame)) return false;
+  if (!HasCentreOf(who, room, view.frame) || !instances_.IsA(who, "Thing") ||
+      !instances_.IsA(room, "Thing"))
+    return true;
+  const auto edge = [&](int of) {
+    return MiddleEdge(entity_table_.entities[static_cast<std::size_t>(of)].half_size_m);
+  };
+  if (edge(who) != edge(room)) return edge(who) < edge(room);
+  return history_.Look(who, view.frame).p_WB_m.z() > history_.Look(room, view.frame).p_WB_m.z();
 }
 
 double Evaluator::AwayFrom_m(int who, int whom, FrameNumber frame) const {

@@ -483,15 +483,16 @@ TEST(Signals, InsideAsksTheCentreOfTheBox) {
   EXPECT_TRUE(holds({0.3, 0.3, 0.1}));
 }
 
-TEST(Signals, OfTwoInEachOtherTheLowerOneIsRoundTheOther) {
+TEST(Signals, OfTwoInEachOtherTheWiderOneIsRoundTheOther) {
   const auto program =
       testing::CompileText("grammar t\nevent in(a: Movable, b: Movable) while inside(a, b)");
   Scene scene;
-  scene.entity_table.entities[Scene::kTray].half_size_m = {0.05, 0.05, 0.05};
-  scene.entity_table.entities[Scene::kCup].half_size_m = {0.02, 0.02, 0.06};
-  const auto found = [&](double cup_z_m) {
+  const auto found = [&](const Eigen::Vector3d& half_m, double cup_z_m, double turn_rad = 0) {
+    scene.entity_table.entities[Scene::kTray].half_size_m = {0.07, 0.07, 0.025};
+    scene.entity_table.entities[Scene::kCup].half_size_m = half_m;
     scene.looks[Scene::kCup].p_WB_m = {0, 0, cup_z_m};
-    scene.looks[Scene::kTray].p_WB_m = {0, 0, 0.05};
+    scene.looks[Scene::kCup].q_WB = Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitX());
+    scene.looks[Scene::kTray].p_WB_m = {0, 0, 0.025};
     Monitor monitor(program, scene.entity_table);
     std::vector<Event> events;
     monitor.Advance(scene.At(0), events);
@@ -501,9 +502,12 @@ TEST(Signals, OfTwoInEachOtherTheLowerOneIsRoundTheOther) {
       text += event.roles[0] == Scene::kCup ? "cup in tray " : "tray in cup ";
     return text;
   };
-  EXPECT_EQ(found(0.065), "cup in tray ") << "a bottle in a cup";
-  EXPECT_EQ(found(0.055), "tray in cup ") << "a ring around a bottle";
-  EXPECT_EQ(found(0.11), "tray in cup ") << "the centre of one alone is in the other";
+  for (const double turn_rad : {0.0, 0.2, 0.8, 1.5})
+    EXPECT_EQ(found({0.037, 0.037, 0.037}, 0.041, turn_rad), "cup in tray ") << "a ball in a bowl";
+  EXPECT_EQ(found({0.02, 0.02, 0.06}, 0.04), "cup in tray ") << "a bottle in a cup";
+  EXPECT_EQ(found({0.07, 0.07, 0.025}, 0.03), "cup in tray ") << "nested";
+  EXPECT_EQ(found({0.07, 0.07, 0.025}, 0.02), "tray in cup ");
+  EXPECT_EQ(found({0.037, 0.037, 0.06}, 0.055), "tray in cup ") << "one centre alone";
 }
 
 // Where frames are lost, the window around the frame before an edge reaches far back. The cup falls
