@@ -198,18 +198,28 @@ def check_not_tracked(folder):
         said("episode", "export", rare, "--to", form, "-o", folder / f"rare.{form}")
         said("import", folder / f"rare.{form}", "--map", folder / f"rare.{form}.map.yaml", "-o", folder / "back.jsonl")
         assert resegmented(folder / "back.jsonl") == resegmented(rare), form
-    # Where nothing is lost, there is a row for each frame and none in a pause of all.
+    # Where nothing is lost once it was seen, there is a row for each frame and none in a pause of all.
     pause = folder / "pause.jsonl"
-    lines = take("seen", {})[0].read_text(encoding="utf-8").splitlines()
-    pause.write_text("\n".join(line for k, line in enumerate(lines) if not (90 <= k < 93 or 95 <= k < 110)), encoding="utf-8")
-    for form in ("csv", "npz", "mcap"):
-        told = said("episode", "export", pause, "--to", form, "-o", folder / f"pause.{form}")
-        assert "222 frames" in told, told
-        said("import", folder / f"pause.{form}", "--map", folder / f"pause.{form}.map.yaml", "-o", folder / "back.jsonl")
-        ticks = [[json.loads(line)["tick"] for line in open(file, encoding="utf-8") if '"tick"' in line] for file in (pause, folder / "back.jsonl")]
-        seconds = [json.loads(open(file, encoding="utf-8").readline())["ticks_per_second"] for file in (pause, folder / "back.jsonl")]
-        assert np.allclose(*[np.array(of) / per for of, per in zip(ticks, seconds)], atol=1e-9), form
-        assert resegmented(folder / "back.jsonl") == resegmented(pause), form
+    for unseen in ({"cup": (0, 0.9)}, {}):
+        lines = take("seen", unseen)[0].read_text(encoding="utf-8").splitlines()
+        pause.write_text("\n".join(line for k, line in enumerate(lines) if not (90 <= k < 93 or 95 <= k < 110)), encoding="utf-8")
+        for form in ("csv", "npz", "mcap"):
+            told = said("episode", "export", pause, "--to", form, "-o", folder / f"pause.{form}")
+            assert "222 frames" in told, told
+            said("import", folder / f"pause.{form}", "--map", folder / f"pause.{form}.map.yaml", "-o", folder / "back.jsonl")
+            ticks = [[json.loads(line)["tick"] for line in open(file, encoding="utf-8") if '"tick"' in line] for file in (pause, folder / "back.jsonl")]
+            seconds = [json.loads(open(file, encoding="utf-8").readline())["ticks_per_second"] for file in (pause, folder / "back.jsonl")]
+            assert np.allclose(*[np.array(of) / per for of, per in zip(ticks, seconds)], atol=1e-9), form
+            assert resegmented(folder / "back.jsonl") == resegmented(pause), form
+    # A map bridges no more than a minute.
+    long = folder / "long.jsonl"
+    moved = [json.loads(line) for line in lines]
+    for line in moved[120:]:
+        line.update({key: line[key] + 90_000 for key in ("tick", "end_tick") if key in line})
+    long.write_text("\n".join(map(json.dumps, moved)), encoding="utf-8")
+    said("episode", "export", long, "--to", "csv", "-o", folder / "long.csv")
+    said("import", folder / "long.csv", "--map", folder / "long.csv.map.yaml", "-o", folder / "back.jsonl")
+    assert resegmented(folder / "back.jsonl") == resegmented(long)
     # What is lost in an episode file is lost as long in what is written of it.
     lost = take("lost", {"cup": (2.6, 3.4)})[0]
     said("episode", "export", lost, "--to", "csv", "-o", folder / "l.csv")

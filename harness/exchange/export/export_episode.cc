@@ -24,7 +24,8 @@
 namespace prehend::exchange {
 namespace {
 
-constexpr double kLong = 1.5;  ///< of the usual step: no import takes more for the next one
+constexpr double kLong = 1.5;         ///< of the usual step: no import takes more for the next one
+constexpr double kMostBridge_s = 60;  ///< of a map
 
 /// `file` has one of the endings. Returns "", or what could not be written.
 std::string WriteMotion(const Motion& motion, const std::string& file) {
@@ -212,6 +213,7 @@ void Motion::LookAtAll() {
       Seen& of = seen[i];
       if (!grammar::IsTracked(look)) {
         header.bridge_s = 0;  // short losses stand in the frames, and what is lost counts as it is
+        of.is_lost = of.is_lost || of.looks > 0;
         continue;
       }
       of.has_joint = of.has_joint || look.joint_position != 0 || look.joint_fraction != 0;
@@ -237,8 +239,9 @@ void Motion::LookAtAll() {
 void Motion::JudgeSteps(std::vector<grammar::Tick> steps, grammar::Tick to_end) {
   const double ticks_per_s = static_cast<double>(table().ticks_per_second),
                bridge = bridge_s * ticks_per_s;
-  const bool all_seen =
-      std::ranges::all_of(seen, [&](const Seen& of) { return of.looks == frames; });
+  // What is lost would be bridged as pauses are.
+  const double longest =
+      std::ranges::any_of(seen, &Seen::is_lost) ? bridge : kMostBridge_s * ticks_per_s;
   const grammar::Tick usual = Median(steps);
   const auto is_long = [&](grammar::Tick step) {
     return static_cast<double>(step) > kLong * static_cast<double>(usual);
@@ -248,7 +251,7 @@ void Motion::JudgeSteps(std::vector<grammar::Tick> steps, grammar::Tick to_end) 
   double bridged = header.bridge_s;
   for (const grammar::Tick step : steps) {
     if (!is_long(step)) continue;
-    if (all_seen || static_cast<double>(step) <= bridge)
+    if (static_cast<double>(step) <= longest)
       bridged = std::max(bridged, static_cast<double>(step) / ticks_per_s);
     else
       row_ticks_ = usual;

@@ -74,6 +74,7 @@ class Motion {
   /// What is known of an entity from all frames.
   struct Seen {
     std::size_t looks = 0;  ///< frames in which it is tracked
+    bool is_lost = false;   ///< in one after the first of these
     bool moves = false;
     bool has_joint = false;                  ///< by its class, or somewhere else than at 0
     grammar::EntitySample first;             ///< look
