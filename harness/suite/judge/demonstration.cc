@@ -17,8 +17,7 @@ using grammar::NamedEvent;
 using grammar::Tick;
 
 // docs/robot-demonstrations.md says what each is for.
-constexpr double kHalf = 0.5, kClosed = 0.9, kOpened = 0.05,
-                 kOpens = 0.02;  // of the way of a gripper
+constexpr double kHalf = 0.5, kClosed = 0.9, kOpened = 0.05;  // of the way of a gripper
 constexpr double kNear_m = 0.1, kFall_m = 0.03, kMoved_m = 0.02;
 constexpr double kPause_s = 0.3, kSoon_s = 0.5, kAfter_s = 1;
 
@@ -76,7 +75,7 @@ class Facts {
     Tick opens = end;
     Each(begin, end, [&](const auto& frame) {
       closed = std::max(closed, TriggerIn(frame, IndexOf(hand)));
-      if (TriggerIn(frame, IndexOf(hand)) >= closed - kOpens) opens = frame.tick;
+      if (TriggerIn(frame, IndexOf(hand)) >= closed - kOpened) opens = frame.tick;
     });
     return opens;
   }
