@@ -123,7 +123,6 @@ class Evaluator {
   double ClosingSpeed(int hand, int object, FrameNumber frame) const;
   double SurfaceSpeed(int hand, FrameNumber frame) const;
   bool SensorSet(const Node& node, const View& view) const;
-  bool HasCentreOf(int room, int who, FrameNumber frame) const;
   bool IsInside(const Node& node, const View& view) const;
   bool IsNearest(const Node& node, const View& view) const;
   double Weight(int entity) const;

@@ -19,18 +19,6 @@ double DistanceToSurface_m(const Vector3d& p_W, const EntityInfo& member, const 
   return outside.norm();
 }
 
-// The centre of one's box is in the other's.
-bool Evaluator::HasCentreOf(int room, int who, FrameNumber frame) const {
-  const EntityInfo& of = entity_table_.entities[static_cast<std::size_t>(room)];
-  const EntitySample& look = history_.Look(who, frame);
-  const EntitySample& at = history_.Look(room, frame);
-  const Vector3d centre_W =
-      look.p_WB_m + look.q_WB * entity_table_.entities[static_cast<std::size_t>(who)].p_BC_m;
-  const Vector3d away_m = at.q_WB.conjugate() * (centre_W - at.p_WB_m) - of.p_BC_m;
-  if (of.round) return away_m.norm() <= of.half_size_m.x();
-  return (away_m.cwiseAbs().array() <= of.half_size_m.array()).all();
-}
-
 namespace {
 
 /// Neither the longest nor the shortest one, as the width of a bottle and of a bowl.
@@ -44,8 +32,8 @@ double MiddleEdge(const Vector3d& edges) {
 // the wider one, however they are turned; of equals, as of nested cups, the lower one.
 bool Evaluator::IsInside(const Node& node, const View& view) const {
   const int who = Entity(node, view, 0), room = Entity(node, view, 1);
-  if (!HasCentreOf(room, who, view.frame)) return false;
-  if (!HasCentreOf(who, room, view.frame) || !instances_.IsA(who, "Thing") ||
+  if (OutOfBox_m(who, room, view.frame) > 0) return false;
+  if (OutOfBox_m(room, who, view.frame) > 0 || !instances_.IsA(who, "Thing") ||
       !instances_.IsA(room, "Thing"))
     return true;
   const auto edge = [&](int of) {
