@@ -44,6 +44,15 @@ def poses_of(lines, names):
     return np.array(ticks), np.array(p), np.array(q)
 
 
+def lost_in(lines, names):
+    """Of each frame of a recording, which of `names` are not tracked in it."""
+    at, lost = {}, []
+    for line in lines[1:-1]:
+        at.update(line["samples"])
+        lost.append([name for name in names if at[name] is None])
+    return lost
+
+
 def turned(q, v):
     """v in the axes that q turns to."""
     u = q[..., 1:]
@@ -198,20 +207,35 @@ def check_not_tracked(folder):
         said("episode", "export", rare, "--to", form, "-o", folder / f"rare.{form}")
         said("import", folder / f"rare.{form}", "--map", folder / f"rare.{form}.map.yaml", "-o", folder / "back.jsonl")
         assert resegmented(folder / "back.jsonl") == resegmented(rare), form
-    # Where nothing is lost once it was seen, there is a row for each frame and none in a pause of all.
+    # There is a row for each frame and none in a pause, also where things are lost, all at once or one in a single frame; the end is kept.
     pause = folder / "pause.jsonl"
-    for unseen in ({"cup": (0, 0.9)}, {}):
+    gone = {"cup": (2.6, 3.4), "right_hand": (2.6, 3), "drawer": (2.6, 3), "table": (2.6, 3)}
+    for unseen, end in (({"cup": (0, 0.9)}, 5976), ({}, 5990), ({"cup": (2.6, 3.4)}, 5999), (gone, 6100), ({"right_hand": (3.5, 3.51)}, 9000)):
         lines = take("seen", unseen)[0].read_text(encoding="utf-8").splitlines()
+        lines[0], lines[-1] = json.dumps({**json.loads(lines[0]), "bridge_s": 0}), json.dumps({"end_tick": end})
         pause.write_text("\n".join(line for k, line in enumerate(lines) if not (90 <= k < 93 or 95 <= k < 110)), encoding="utf-8")
         for form in ("csv", "npz", "mcap"):
             told = said("episode", "export", pause, "--to", form, "-o", folder / f"pause.{form}")
             assert "222 frames" in told, told
             said("import", folder / f"pause.{form}", "--map", folder / f"pause.{form}.map.yaml", "-o", folder / "back.jsonl")
-            ticks = [[json.loads(line)["tick"] for line in open(file, encoding="utf-8") if '"tick"' in line] for file in (pause, folder / "back.jsonl")]
-            seconds = [json.loads(open(file, encoding="utf-8").readline())["ticks_per_second"] for file in (pause, folder / "back.jsonl")]
-            assert np.allclose(*[np.array(of) / per for of, per in zip(ticks, seconds)], atol=1e-9), form
+            there, back = [[json.loads(line) for line in open(file, encoding="utf-8")] for file in (pause, folder / "back.jsonl")]
+            assert np.allclose(*[[line.get("tick", line.get("end_tick")) / lines[0]["ticks_per_second"] for line in lines[1:]] for lines in (there, back)], atol=1e-9)
+            assert lost_in(there, gone) == lost_in(back, gone), (form, unseen)
             assert resegmented(folder / "back.jsonl") == resegmented(pause), form
-    # A map bridges no more than a minute.
+    # One frame; and what is seen in one only.
+    once = take("once", {"cup": (0.02, 9)})[0]
+    one = folder / "one.jsonl"
+    lines = once.read_text(encoding="utf-8").splitlines()
+    one.write_text("\n".join([*lines[:2], json.dumps({"end_tick": 20})]), encoding="utf-8")
+    for file in (one, once):
+        for form in ("csv", "npz", "mcap"):
+            said("episode", "export", file, "--to", form, "-o", folder / f"one.{form}")
+            said("import", folder / f"one.{form}", "--map", folder / f"one.{form}.map.yaml", "-o", folder / "back.jsonl")
+            back = [json.loads(line) for line in open(folder / "back.jsonl", encoding="utf-8")]
+            assert [len(back), list(back[0]["entities"])] == [3 if file == one else 242, list(json.loads(lines[0])["entities"])], (form, back[0])
+            assert resegmented(folder / "back.jsonl") == resegmented(file), form
+    # A pause may be longer than a map bridges.
+    lines = take("seen", {})[0].read_text(encoding="utf-8").splitlines()
     long = folder / "long.jsonl"
     moved = [json.loads(line) for line in lines]
     for line in moved[120:]:

@@ -47,7 +47,9 @@ class RowPoseReader {
     if (stream_ && frames_ > 0) poses_.last_s = SecondsAt(frames_ - 1);
     if (stream_) return std::move(poses_);
     poses_.last_s = SecondsAt(frames_ - 1);
-    if (frames_ < kFewFrames)
+    for (std::size_t i = 0; map_.lost == Lost::kInRows && i < frames_; ++i)
+      poses_.rows_s.push_back(SecondsAt(i));
+    if (frames_ < kFewFrames && map_.lost != Lost::kInRows)
       poses_.notes.push_back(fmt::format("it has only {}, {:.2f} s",
                                          grammar::CountOf(frames_, "frame"), poses_.last_s));
     if (orders_ && !others_) poses_.quaternion_order = map_.quaternion_order->value;

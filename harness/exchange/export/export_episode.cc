@@ -15,7 +15,6 @@
 #include "grammar/base/frame.h"
 #include "grammar/contents.h"
 #include "harness/base/base/atomic_file.h"
-#include "harness/base/base/median.h"
 #include "harness/base/base/quoting.h"
 #include "harness/episode/episode/episode.h"
 #include "harness/episode/episodes/database.h"
@@ -23,9 +22,6 @@
 
 namespace prehend::exchange {
 namespace {
-
-constexpr double kLong = 1.5;         ///< of the usual step: no import takes more for the next one
-constexpr double kMostBridge_s = 60;  ///< of a map
 
 /// `file` has one of the endings. Returns "", or what could not be written.
 std::string WriteMotion(const Motion& motion, const std::string& file) {
@@ -198,22 +194,17 @@ Result<Motion> Motion::Of(episode::Episode& episode, const episode::GrammarChoic
 
 void Motion::LookAtAll() {
   header = episode_->Header();
-  bridge_s = header.bridge_s;
   if (const episode::Recording* recording = episode_->recording())
     says_its_end = recording->says_its_end;
   for (const grammar::EntityInfo& entity : table().entities)
     seen.push_back({.has_joint = std::ranges::count(entity.classes, "Jointed") > 0});
-  std::vector<grammar::Tick> steps;
-  grammar::Tick last = 0;
   const episode::Episode::End end = episode_->EachFrame([&](const grammar::Frame& frame) {
-    if (frames++ > 0) steps.push_back(frame.tick - last);
-    last = frame.tick;
+    if (frames++ == 0) first_tick = frame.tick;
     for (std::size_t i = 0; i < frame.entities.size(); ++i) {
       const grammar::EntitySample& look = frame.entities[i];
       Seen& of = seen[i];
       if (!grammar::IsTracked(look)) {
         header.bridge_s = 0;  // short losses stand in the frames, and what is lost counts as it is
-        of.is_lost = of.is_lost || of.looks > 0;
         continue;
       }
       of.has_joint = of.has_joint || look.joint_position != 0 || look.joint_fraction != 0;
@@ -233,50 +224,6 @@ void Motion::LookAtAll() {
   });
   end_tick = end.tick;
   failure = end.failure;
-  JudgeSteps(std::move(steps), end_tick - last);
-}
-
-void Motion::JudgeSteps(std::vector<grammar::Tick> steps, grammar::Tick to_end) {
-  const double ticks_per_s = static_cast<double>(table().ticks_per_second),
-               bridge = bridge_s * ticks_per_s;
-  // What is lost would be bridged as pauses are.
-  const double longest =
-      std::ranges::any_of(seen, &Seen::is_lost) ? bridge : kMostBridge_s * ticks_per_s;
-  const grammar::Tick usual = Median(steps);
-  const auto is_long = [&](grammar::Tick step) {
-    return static_cast<double>(step) > kLong * static_cast<double>(usual);
-  };
-  repeats_end_ = is_long(to_end);
-  steps.push_back(to_end);
-  double bridged = header.bridge_s;
-  for (const grammar::Tick step : steps) {
-    if (!is_long(step)) continue;
-    if (static_cast<double>(step) <= longest)
-      bridged = std::max(bridged, static_cast<double>(step) / ticks_per_s);
-    else
-      row_ticks_ = usual;
-  }
-  bridge_s = bridged;
-}
-
-void Motion::EachRow(const Look& look) const {
-  grammar::Tick tick = 0;
-  std::vector<grammar::EntitySample> entities;
-  std::vector<grammar::HandSample> hands;
-  const auto repeat = [&](grammar::Tick end) {
-    while (row_ticks_ > 0 && !entities.empty() && tick + row_ticks_ < end)
-      look({.tick = tick += row_ticks_, .entities = entities, .hands = hands, .touches = {}});
-  };
-  EachFrame([&](const grammar::Frame& frame) {
-    repeat(frame.tick);
-    look(frame);
-    tick = frame.tick;
-    entities.assign(frame.entities.begin(), frame.entities.end());
-    hands.assign(frame.hands.begin(), frame.hands.end());
-  });
-  repeat(end_tick);
-  if (repeats_end_ && !entities.empty() && tick + 1 < end_tick)
-    look({.tick = end_tick - 1, .entities = entities, .hands = hands, .touches = {}});
 }
 
 void Motion::EachFrame(const Look& look) const { episode_->EachFrame(look); }
@@ -297,7 +244,7 @@ void WriteCsv(const Motion& motion, std::ostream& out) {
   for (const grammar::EntityInfo& entity : motion.table().entities)
     names.push_back(AsCsvCell(entity.name));
   std::vector<std::string> grips(names.size());
-  motion.EachRow([&](const grammar::Frame& frame) {
+  motion.EachFrame([&](const grammar::Frame& frame) {
     for (const grammar::HandSample& hand : frame.hands)
       grips[hand.entity] = fmt::to_string(hand.trigger);
     const std::string t = truth::SecondsText(frame.tick, motion.table().ticks_per_second);
@@ -371,9 +318,11 @@ std::string MapText(const Motion& motion, const std::string& ending) {
   while (ticks_per_second < 100) ticks_per_second *= 10;  // the least that a map can say
   std::string text = fmt::format(
       "# prehend import FILE --map THIS -o take.jsonl; time 0 is that of the first frame.\n"
-      "import: 1\nepisode: {}\nunit: m\naxes: z_up\nticks_per_second: {}\nlost: unknown\n"
-      "bridge_s: {}\nsure: [unit, axes, quaternion_order, time, place, zero, upright, handed]\n",
-      quoted(motion.header.episode), ticks_per_second, motion.bridge_s);
+      "import: 1\nepisode: {}\nunit: m\naxes: z_up\nticks_per_second: {}\nlost: in_rows\n"
+      "bridge_s: {}\nend_s: {}\nsure: [unit, axes, quaternion_order, time, place, zero, upright, "
+      "handed]\n",
+      quoted(motion.header.episode), ticks_per_second, motion.header.bridge_s,
+      motion.Seconds(motion.end_tick - motion.first_tick));
   if (ending == ".csv")
     text +=
         "quaternion_order: wxyz\ntime_unit: s\n"
@@ -384,7 +333,7 @@ std::string MapText(const Motion& motion, const std::string& ending) {
     text += "mcap: {clock: log, world: " + quoted(WorldName(motion.table())) + "}\n";
   text += GrammarOf(motion) + "entities:\n";
   const auto is_mapped = [&](std::size_t i) {
-    return IsTrackerBody(motion.table().entities[i]) && motion.seen[i].looks >= 2;
+    return IsTrackerBody(motion.table().entities[i]) && motion.seen[i].looks > 0;
   };
   for (std::size_t i = 0; i < motion.seen.size(); ++i) {
     const grammar::EntityInfo& entity = motion.table().entities[i];
@@ -429,13 +378,13 @@ void WriteNpz(const Motion& motion, std::ostream& out) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const std::size_t count = motion.seen.size();
   std::vector<double> t, p, q, grip, joint, begin, end;
-  motion.EachRow([&](const grammar::Frame& frame) {
+  motion.EachFrame([&](const grammar::Frame& frame) {
     t.push_back(motion.Seconds(frame.tick));
     for (const grammar::EntitySample& look : frame.entities) {
       const bool known = grammar::IsTracked(look);
       for (int i = 0; i < 3; ++i) p.push_back(known ? look.p_WB_m[i] : kNone);
       for (const int i : {3, 0, 1, 2}) q.push_back(known ? look.q_WB.coeffs()[i] : kNone);
-      joint.push_back(look.joint_position);
+      joint.push_back(known ? look.joint_position : kNone);
     }
     grip.resize(t.size() * count, kNone);
     for (const grammar::HandSample& hand : frame.hands)

@@ -48,9 +48,6 @@ class Motion {
 
   using Look = std::function<void(const grammar::Frame&)>;
   void EachFrame(const Look& look) const;
-  /// The same, and at its end the last one again if that lasts. A pause has no rows, but where
-  /// something is lost: then the last one again, as a table says what it mentions only.
-  void EachRow(const Look& look) const;
 
   const grammar::EntityTable& table() const { return header.entity_table; }
   double Seconds(grammar::Tick tick) const {
@@ -63,9 +60,8 @@ class Motion {
   grammar::Timeline timeline;
   std::vector<std::string> uuids;  ///< of its events
   std::size_t frames = 0;
-  grammar::Tick end_tick = 0;
+  grammar::Tick first_tick = 0, end_tick = 0;
   bool says_its_end = true;
-  double bridge_s = 0;                ///< for how long a table, where it has no row, counts
   std::string judged_by;              ///< a grammar's name or file
   std::vector<std::string> settings;  ///< of its parameters
   bool was_simulated = false;
@@ -74,7 +70,6 @@ class Motion {
   /// What is known of an entity from all frames.
   struct Seen {
     std::size_t looks = 0;  ///< frames in which it is tracked
-    bool is_lost = false;   ///< in one after the first of these
     bool moves = false;
     bool has_joint = false;                  ///< by its class, or somewhere else than at 0
     grammar::EntitySample first;             ///< look
@@ -87,11 +82,7 @@ class Motion {
  private:
   explicit Motion(episode::Episode& episode) : episode_(&episode) {}
   void LookAtAll();
-  /// `steps`: from frame to frame.
-  void JudgeSteps(std::vector<grammar::Tick> steps, grammar::Tick to_end);
   episode::Episode* episode_;
-  grammar::Tick row_ticks_ = 0;  ///< between two rows in a pause; 0: it has none
-  bool repeats_end_ = false;
 };
 
 // Motion in the formats of other programs (docs/episodes.md).

@@ -466,7 +466,7 @@ std::string WriteMcap(const Motion& motion, const std::string& name, std::ostrea
       bag.Message(events, motion.Nanoseconds(edge->first), StringMessage(edge->second));
   };
   std::vector<JointValue> values;
-  motion.EachRow([&](const grammar::Frame& frame) {
+  motion.EachFrame([&](const grammar::Frame& frame) {
     tell_events(frame.tick);
     const std::uint64_t ns = motion.Nanoseconds(frame.tick);
     frames.clear();
@@ -480,7 +480,7 @@ std::string WriteMcap(const Motion& motion, const std::string& name, std::ostrea
     }
     for (const grammar::HandSample& hand : frame.hands)
       values.push_back({table.entities[hand.entity].name + "_grip", hand.trigger});
-    if (!frames.empty()) bag.Message(moving, ns, TransformsMessage(ns, world, frames));
+    bag.Message(moving, ns, TransformsMessage(ns, world, frames));
     if (!values.empty()) bag.Message(joints, ns, JointsMessage(ns, values));
   });
   tell_events(std::max(motion.end_tick, edges.empty() ? 0 : edges.back().first));

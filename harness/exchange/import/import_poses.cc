@@ -13,11 +13,9 @@
 #include "grammar/base/diagnostic.h"
 #include "grammar/base/frame.h"
 #include "harness/base/yaml/diagnostic_list.h"
-#include "harness/exchange/arrays/read_array_poses.h"
 #include "harness/exchange/doubts/plausibility.h"
 #include "harness/exchange/doubts/rest_poses.h"
 #include "harness/exchange/import/track.h"
-#include "harness/exchange/poses/table_layout.h"
 
 namespace prehend::exchange {
 namespace {
@@ -62,7 +60,7 @@ class FrameMaker {
         sample.q_WB = pose.q;
         if (!before.empty() && !Found(tracks[i], passed) && grammar::IsTracked(before[i]))
           SetVelocity(before[i], t_s - before_s, sample);
-        if (map_.lost == Lost::kUnknown && IsLost(tracks[i], t_s)) sample = grammar::NotTracked();
+        if (map_.lost != Lost::kHold && IsLost(tracks[i], t_s)) sample = grammar::NotTracked();
         if (map_.entities[i].value.hand) {
           frame.hands.push_back(
               {.entity = static_cast<int>(i), .ahead_W = pose.q * AheadOf(map_.entities[i].value)});
@@ -140,6 +138,7 @@ class Importer {
         Convert(entity.value, track);
     }
     JudgeJumps();
+    SetRows();
     for (std::size_t i = 0; i < tracks_.size(); ++i) AddTrack(map_.entities[i], tracks_[i]);
     imported_.openings = file_.quality;
     for (const OpeningSeries& opening : file_.openings) AddOpening(opening);
@@ -315,8 +314,9 @@ class Importer {
   /// The file's poses become those of the track.
   void Convert(const MappedEntity& entity, Track& track) {
     Kept& kept = kept_[tracks_.size() - 1];
-    PoseSeries& samples =
-        std::ranges::find(file_.bodies, entity.from->value, &PoseBody::name)->samples;
+    PoseBody& body = *std::ranges::find(file_.bodies, entity.from->value, &PoseBody::name);
+    PoseSeries& samples = body.samples;
+    track.stands = body.stands;
     kept.usual_s = UsualStep_s(samples);
     if (entity.upright_at_s) {
       const double t_s = entity.upright_at_s->value;
@@ -337,6 +337,12 @@ class Importer {
     LetGo(track.poses);
   }
 
+  /// Whether something is seen between two poses, or before the first or after the last one.
+  bool HasRowIn(double from_s, double until_s, bool within) const {
+    const auto row = std::ranges::upper_bound(file_.rows_s, from_s);
+    return within ? row != file_.rows_s.end() && *row < until_s : from_s < until_s;
+  }
+
   void MarkGaps(double usual_s, const Where& where, bool of_opening, Track& track,
                 EntityReport& report) {
     PoseSeries& poses = track.poses;
@@ -345,8 +351,10 @@ class Importer {
     double longest_s = 0, longest_from_s = 0, bridge_s = 0;
     const auto take = [&](double from_s, double until_s, bool within) {
       const double gap_s = until_s - from_s;
-      if (gap_s <= kGap * usual_s) return false;
-      const bool lost = gap_s > map_.bridge_s + 1e-9 || !within;
+      const bool in_rows = map_.lost == Lost::kInRows;
+      if (in_rows ? !HasRowIn(from_s, until_s, within) || track.stands : gap_s <= kGap * usual_s)
+        return false;
+      const bool lost = gap_s > map_.bridge_s + 1e-9 || !within || in_rows;
       (lost ? report.lost : report.bridged) += 1;
       (lost ? report.lost_s : report.bridged_s) += gap_s;
       if (lost && within) bridge_s = std::max(bridge_s, std::ceil(100 * gap_s - 1e-6) / 100);
@@ -372,7 +380,7 @@ class Importer {
                    : track.lost_before                   ? "; later it stays as it was"
                                                          : ": it stays as it was"));
     if (map_.lost == Lost::kHold) return Warn(text + ": it is held where it was, at rest");
-    if (map_.lost == Lost::kUnknown) return Warn(text + ": nobody knows where it is");
+    if (map_.lost != Lost::kRefuse) return Warn(text + ": nobody knows where it is");
     errors_.Add(where, text,
                 fmt::format("in the map: lost: unknown (nobody knows where it is meanwhile){}, or "
                             "lost: hold (it stays where it was)",
@@ -467,6 +475,16 @@ class Importer {
     return std::llround(t_s * static_cast<double>(map_.ticks_per_second));
   }
 
+  /// Of all bodies, where they decide what is lost.
+  void SetRows() {
+    if (map_.lost != Lost::kInRows) return;
+    for (const Track& track : tracks_)
+      for (const PoseSample& pose : track.poses) file_.rows_s.push_back(pose.t_s);
+    std::ranges::sort(file_.rows_s);
+    const auto again = std::ranges::unique(file_.rows_s);
+    file_.rows_s.erase(again.begin(), again.end());
+  }
+
   /// The times of all poses. Returns what is wrong, or "".
   std::string SetTicks() {
     std::vector<const Track*> tracks;
@@ -487,6 +505,10 @@ class Importer {
     }
     times_.emplace(0, 0.0);
     times_.emplace(TickOf(file_.last_s), file_.last_s);
+    for (const double t_s : file_.rows_s) times_.emplace(TickOf(t_s), t_s);
+    if (map_.end_s && TickOf(map_.end_s->value) <= times_.rbegin()->first)
+      errors_.Add(map_.end_s->where,
+                  fmt::format("the last row of the file is at {:g} s", file_.last_s));
     if (map_.lost == Lost::kUnknown) AddEndsOfSight();
     if (times_.size() > episode::kMaxEpisodeFrames)
       return fmt::format("{} different times; a recording has at most {} frames", times_.size(),
@@ -516,7 +538,7 @@ class Importer {
     imported_.frames = times_.size();
     episode.placed.assign(tracks_.size(), true);
     episode.says_its_end = true;
-    episode.end_tick = times_.rbegin()->first + 1;
+    episode.end_tick = map_.end_s ? TickOf(map_.end_s->value) : times_.rbegin()->first + 1;
     maker_->series = std::move(file_.openings);
     episode.play = [maker = maker_](const auto& look) { maker->EachFrame(look); };
     episode::Recording seen{.header = episode.header};
@@ -562,31 +584,6 @@ PoseSample InRecording(const PoseSample& sample, const MappedEntity& entity, con
                    .normalized();
   at.p = turn * (sample.p * map.MetresPerUnit()) + at.q * entity.offset_m;
   return at;
-}
-
-Result<MapFile> ReadMapFor(const std::string& poses_path, PoseFormat format,
-                           Result<YamlDocument> map) {
-  if (format == PoseFormat::kCsv) return ReadMapOfTable(std::move(map), poses_path);
-  if (format != PoseFormat::kC3d) return ReadImportMap(std::move(map), format);
-  PREHEND_TRY(TableLayout layout, LayoutOfC3d(poses_path));  // it says its unit and rate
-  return ReadMapWith(std::move(map), format, std::move(layout));
-}
-
-Result<PoseFile> ReadPoses(const std::string& poses_path, PoseFormat format, const MapFile& map) {
-  using Reader = Result<PoseFile> (*)(const std::string&, const MapFile&);
-  constexpr std::array<Reader, 7> kReaders = {ReadCsvPoses,  ReadBvhPoses, ReadMcapPoses, nullptr,
-                                              ReadJsonPoses, ReadNpzPoses, ReadC3dPoses};
-  return kReaders.at(static_cast<std::size_t>(format))(poses_path, map);
-}
-
-Result<Imported> ImportPoses(const std::string& poses_path, const std::string& map_path) {
-  PREHEND_TRY(const PoseFormat format, PoseFormatOf(poses_path));
-  if (format == PoseFormat::kHdf5)
-    return tl::unexpected(ErrorOfFile(
-        poses_path, "demonstrations in HDF5 are imported alone: all of one file in one call"));
-  PREHEND_TRY(const MapFile map, ReadMapFor(poses_path, format, ReadYamlFile(map_path)));
-  PREHEND_TRY(PoseFile poses, ReadPoses(poses_path, format, map));
-  return ImportPoses(std::move(poses), map);
 }
 
 Result<Imported> ImportPoses(PoseFile poses, const MapFile& map) {

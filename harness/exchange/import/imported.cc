@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/import_poses.h: what a recording has before its frames, and what is
-// told of it.
+// See harness/exchange/import/import_poses.h: what is read, what a recording has before its
+// frames, and what is told of it.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
 
+#include "harness/exchange/arrays/read_array_poses.h"
 #include "harness/exchange/import/import_poses.h"
+#include "harness/exchange/poses/table_layout.h"
 
 namespace prehend::exchange {
 namespace {
@@ -83,6 +85,31 @@ std::string ImportTable(const Imported& imported) {
         one.name, q.w(), q.x(), q.y(), q.z());
   }
   return table;
+}
+
+Result<MapFile> ReadMapFor(const std::string& poses_path, PoseFormat format,
+                           Result<YamlDocument> map) {
+  if (format == PoseFormat::kCsv) return ReadMapOfTable(std::move(map), poses_path);
+  if (format != PoseFormat::kC3d) return ReadImportMap(std::move(map), format);
+  PREHEND_TRY(TableLayout layout, LayoutOfC3d(poses_path));  // it says its unit and rate
+  return ReadMapWith(std::move(map), format, std::move(layout));
+}
+
+Result<PoseFile> ReadPoses(const std::string& poses_path, PoseFormat format, const MapFile& map) {
+  using Reader = Result<PoseFile> (*)(const std::string&, const MapFile&);
+  constexpr std::array<Reader, 7> kReaders = {ReadCsvPoses,  ReadBvhPoses, ReadMcapPoses, nullptr,
+                                              ReadJsonPoses, ReadNpzPoses, ReadC3dPoses};
+  return kReaders.at(static_cast<std::size_t>(format))(poses_path, map);
+}
+
+Result<Imported> ImportPoses(const std::string& poses_path, const std::string& map_path) {
+  PREHEND_TRY(const PoseFormat format, PoseFormatOf(poses_path));
+  if (format == PoseFormat::kHdf5)
+    return tl::unexpected(ErrorOfFile(
+        poses_path, "demonstrations in HDF5 are imported alone: all of one file in one call"));
+  PREHEND_TRY(const MapFile map, ReadMapFor(poses_path, format, ReadYamlFile(map_path)));
+  PREHEND_TRY(PoseFile poses, ReadPoses(poses_path, format, map));
+  return ImportPoses(std::move(poses), map);
 }
 
 }  // namespace prehend::exchange

@@ -15,6 +15,7 @@ namespace prehend::exchange {
 struct Track {
   PoseSeries poses;
   bool lost_before = false, lost_after = false;  ///< before its first and after its last pose
+  bool stands = false;                           ///< PoseBody::stands
   std::size_t next = 0;  ///< the first one that is later than the present time
 
   PoseSample At(double t_s) {

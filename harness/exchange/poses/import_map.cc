@@ -107,8 +107,6 @@ void CheckColumns(const ImportMap& map, const YamlNode& root, DiagnosticList& er
   CheckOrientation(map, errors);
   if (!columns.time && !map.rate_hz)
     errors.Add(columns.where, "neither columns.time nor rate_hz says when a row is");
-  if (map.time_unit && map.time_unit->value == TimeUnit::kFrame && !map.rate_hz)
-    errors.Add(map.time_unit->where, "time_unit: frame needs rate_hz");
 }
 
 void CheckUp(const ImportMap& map, const YamlNode& root, DiagnosticList& errors) {
@@ -150,14 +148,11 @@ void CheckOpenings(const Named<MappedEntity>& entity, PoseFormat format, Diagnos
                                            e.hand ? "a hand" : "fixed"));
 }
 
-bool HasArrays(PoseFormat format) {
-  return format == PoseFormat::kHdf5 || format == PoseFormat::kNpz || format == PoseFormat::kJson;
-}
-
 /// What only files of arrays have, and there, that a name is one of a dataset.
 void CheckDatasets(const Named<MappedEntity>& entity, PoseFormat format, DiagnosticList& errors) {
   const MappedEntity& e = entity.value;
-  const bool has_arrays = HasArrays(format);
+  const bool has_arrays =
+      format == PoseFormat::kHdf5 || format == PoseFormat::kNpz || format == PoseFormat::kJson;
   const auto check = [&](const Located<std::string>& name, const char* key) {
     if (!has_arrays)
       errors.Add(name.where, fmt::format("'{}' is a dataset of an HDF5 file, an array of .npz or a "
@@ -207,8 +202,6 @@ void CheckFrames(const ImportMap& map, PoseFormat format, const YamlNode& root,
   if (map.t && !map.time_unit)
     errors.Add(map.t->where, "time_unit is missing: what the times are in",
                "time_unit: s, ms, us, ns, iso or frame");
-  if (map.time_unit && map.time_unit->value == TimeUnit::kFrame && !map.rate_hz)
-    errors.Add(map.time_unit->where, "time_unit: frame needs rate_hz");
   const std::string fault = map.euler_order ? FaultOfEulerOrder(map.euler_order->value) : "";
   if (!fault.empty()) errors.Add(map.euler_order->where, fault);
 }
@@ -230,6 +223,8 @@ void CheckMap(const ImportMap& map, PoseFormat format, const YamlNode& root,
                  "'time_unit' is that of CSV files, and of 't'; this one has its own");
   }
   CheckFrames(map, format, root, errors);
+  if (map.time_unit && map.time_unit->value == TimeUnit::kFrame && !map.rate_hz)
+    errors.Add(map.time_unit->where, "time_unit: frame needs rate_hz");
   if (format == PoseFormat::kBvh && map.quaternion_order)
     errors.Add(map.quaternion_order->where, "BVH has angles, and no quaternions");
   if (format == PoseFormat::kHdf5 && !map.episode.empty())

@@ -22,7 +22,7 @@ namespace prehend::exchange {
 enum class PoseFormat { kCsv, kBvh, kMcap, kHdf5, kJson, kNpz, kC3d };
 enum class LengthUnit { kMetre, kCentimetre, kMillimetre, kInch };
 enum class TimeUnit { kSecond, kMillisecond, kMicrosecond, kNanosecond, kFrame, kIso };
-enum class Lost { kRefuse, kHold, kUnknown };
+enum class Lost { kRefuse, kHold, kUnknown, kInRows };
 enum class OutlierRule { kKeep, kLost };
 enum class Clock { kHeader, kLog, kPublish };
 /// What looks wrong, and is accepted because the map says that it is right.
@@ -153,6 +153,7 @@ struct ImportMap {
   bool zero_is_missing = false;
   double bridge_s = 0.1;  ///< the longest gap that is filled with a straight line
   Lost lost = Lost::kRefuse;
+  std::optional<Located<double>> end_s;      ///< none: at its last row
   OutlierRule outlier = OutlierRule::kKeep;  ///< of poses that leave and come back too fast
   double smooth_s = 0;  ///< poses are means over so long, where nothing was lost
   std::vector<Warning> sure;
@@ -166,6 +167,8 @@ struct ImportMap {
   std::vector<Named<std::string>> text;     ///< of each sub-task, and of the "rest"
 
   bool IsSure(Warning warning) const;
+  /// Of a body.
+  std::size_t LeastPoses() const { return lost == Lost::kInRows ? 1 : 2; }
   double MetresPerUnit() const;
   /// Of `time_unit`.
   double SecondsPerUnit() const;

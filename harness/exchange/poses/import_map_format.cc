@@ -225,8 +225,7 @@ ValueFormat<ImportMap> MapFormat() {
           "The unit of the time column, or of t; frame: a number, rate_hz per second; iso: dates.")
       .Optional("frames", &M::frames, Text(500), "Of JSON: the path to the frames: $.frames[*].")
       .Optional("t", &M::t, Text(500), "Of JSON and .npz: the time of each frame.")
-      .Optional("rate_hz", &M::rate_hz, Number(0.1, 10'000),
-                "Frames per second. It is compared with the times.")
+      .Optional("rate_hz", &M::rate_hz, Number(0.1, 10'000), "Frames per second, as times have.")
       .Optional("separator", &M::separator, Separators(),
                 "What separates columns; space: any number of blanks.")
       .Optional("decimal", &M::decimal_comma, Choice<bool>({{"point", false}, {"comma", true}}),
@@ -235,16 +234,18 @@ ValueFormat<ImportMap> MapFormat() {
                 "The line with the names of the columns; those before it are not read.")
       .Optional("missing", &M::missing, ListOf(CellFormat(), 0, 20),
                 "Cells that mean 'not tracked', besides empty ones: [nan].")
-      .Optional("zero_is_missing", &M::zero_is_missing, Flag(),
-                "A body at exactly 0, 0, 0 is not tracked.")
+      .Optional("zero_is_missing", &M::zero_is_missing, Flag(), "At 0, 0, 0 it is not tracked.")
       .Optional("bridge_s", &M::bridge_s, Number(0, 60),
                 "The longest time without a pose that is filled with a straight line.")
       .Optional(
           "lost", &M::lost,
-          Choice<Lost>(
-              {{"refuse", Lost::kRefuse}, {"hold", Lost::kHold}, {"unknown", Lost::kUnknown}}),
+          Choice<Lost>({{"refuse", Lost::kRefuse},
+                        {"hold", Lost::kHold},
+                        {"unknown", Lost::kUnknown},
+                        {"in_rows", Lost::kInRows}}),
           "What is done where a body is not tracked for longer: nothing is imported, it stays "
-          "where it was, or nobody knows where it is.")
+          "where it was, nobody knows where it is, or that in rows without its pose only.")
+      .Optional("end_s", &M::end_s, Number(0, 1e6), "When the recording ends, after its last row.")
       .Optional("outlier", &M::outlier,
                 Choice<OutlierRule>({{"keep", OutlierRule::kKeep}, {"lost", OutlierRule::kLost}}),
                 "Poses that leave and come back faster than hands do: as they are, or not tracked.")

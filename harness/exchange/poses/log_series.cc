@@ -35,7 +35,7 @@ bool IsOfTopic(const std::string& from, const std::string& topic) {
 class LinkWalk {
  public:
   LinkWalk(const FrameLink& link, std::int64_t bridge_ns)
-      : LinkWalk(link, bridge_ns, link.UsualStep_ns()) {}
+      : link_(link), most_gap_ns_(std::max(bridge_ns, link.UsualStep_ns() * 3 / 2)) {}
 
   std::optional<TimedPose> At(std::int64_t ns) {
     const std::vector<TimedPose>& poses = link_.poses;
@@ -55,9 +55,6 @@ class LinkWalk {
   }
 
  private:
-  LinkWalk(const FrameLink& link, std::int64_t bridge_ns, std::int64_t step_ns)
-      : link_(link), most_gap_ns_(std::max(bridge_ns, step_ns + step_ns / 2)) {}
-
   const FrameLink& link_;
   const std::int64_t most_gap_ns_;
   std::size_t next_ = 0;
@@ -214,6 +211,8 @@ std::string LogSeries::TakePoses(const LogMessage& message, const Source& source
   std::string why = source.reader->Decode(message.data, topic.wanted, read);
   if (!why.empty() && !matters) topic.looked_at = kMostLookedAt + 1;
   if (!why.empty()) return matters ? why : "";
+  if (matters && map_.lost == Lost::kInRows && !message.channel.topic.ends_with("tf_static"))
+    rows_ns.push_back(TimeOf(message, read.empty() ? std::nullopt : read.front().stamp_ns));
   for (const MessagePose& pose : read) {
     if (bodies == MessageReader::Bodies::kByName) {
       why = TakePose(message, pose, pose.name, named[pose.name]);

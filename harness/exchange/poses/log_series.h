@@ -107,7 +107,8 @@ class LogSeries {
   std::map<std::string, LogTopic> topics;
   std::map<std::string, FrameLink> named;  ///< bodies with names of their own
   FrameTree tree;
-  std::size_t zeros = 0;  ///< as in PoseFile
+  std::vector<std::int64_t> rows_ns;  ///< as in PoseFile
+  std::size_t zeros = 0;              ///< as in PoseFile
 
  private:
   struct Source {

@@ -254,11 +254,11 @@ void RefuseAbsentBodies(const PoseFile& poses, const ImportMap& map, DiagnosticL
     const Located<std::string>& from = *entity.value.from;
     const std::size_t count =
         std::ranges::find(poses.bodies, from.value, &PoseBody::name)->samples.size();
-    if (count >= 2) continue;
-    errors.AddUnknownName(
-        from.where,
-        fmt::format("'{}' has {} poses in the file; at least 2 are needed", from.value, count),
-        from.value, poses.unused);
+    if (count >= map.LeastPoses()) continue;
+    errors.AddUnknownName(from.where,
+                          fmt::format("'{}' has {} poses in the file; at least {} are needed",
+                                      from.value, count, map.LeastPoses()),
+                          from.value, poses.unused);
   }
 }
 
@@ -269,6 +269,7 @@ void BeginAtZero(PoseFile& poses) {
   }
   for (OpeningSeries& opening : poses.openings)
     for (OpeningSeries::Sample& sample : opening.samples) sample.t_s -= poses.first_s;
+  for (double& t_s : poses.rows_s) t_s -= poses.first_s;
   poses.last_s -= poses.first_s;
   poses.first_s = 0;
 }
@@ -314,24 +315,19 @@ Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
   if (ending == ".npz") return PoseFormat::kNpz;
   if (ending == ".c3d") return PoseFormat::kC3d;
   if (ending == ".mcap" || ending == ".bag" || ending == ".db3") return PoseFormat::kMcap;
-  static const std::string kTable = "write its poses to a CSV file: one row a time, named columns";
-  static const std::map<std::string, std::string> kOthers = {
+  static const std::array<std::pair<std::string, std::string>, 7> kOthers = {{
       {".npy", "write it with its times and others as .npz: numpy.savez"},
-      {".pkl", "pickles run code when they are read: write its arrays as HDF5 with h5py"},
+      {".pkl .pickle", "pickles run code when they are read: write its arrays as HDF5 with h5py"},
       {".parquet",
        "write its poses as CSV, or as HDF5 with h5py; Python passes tables (docs/python.md)"},
       {".fbx", "export it as BVH"},
-      {".pickle", "pickles run code when they are read: write its arrays as HDF5 with h5py"},
-      {".mat", kTable},
-      {".xlsx", "save the sheet as CSV"},
-      {".xls", "save the sheet as CSV"},
-      {".ods", "save the sheet as CSV"},
-      {".zip", "unpack it"},
-      {".gz", "unpack it"},
-      {".zst", "unpack it"},
-      {".zstd", "unpack it"},
-      {".7z", "unpack it"}};
-  const auto other = kOthers.find(ending);
+      {".mat", "write its poses to a CSV file: one row a time, named columns"},
+      {".xlsx .xls .ods", "save the sheet as CSV"},
+      {".zip .gz .zst .zstd .7z", "unpack it"},
+  }};
+  const auto other = std::ranges::find_if(kOthers, [&](const auto& kind) {
+    return !ending.empty() && (kind.first + ' ').find(ending + ' ') != std::string::npos;
+  });
   if (other == kOthers.end()) return PoseFormat::kCsv;
   return tl::unexpected(grammar::Diagnostics{
       {.file = ReadableName(poses_path),

@@ -30,7 +30,8 @@ using PoseSeries = PagedVector<PoseSample>;
 
 struct PoseBody {
   std::string name;
-  PoseSeries samples;  ///< times increase; where it is not tracked there is none
+  PoseSeries samples;   ///< times increase; where it is not tracked there is none
+  bool stands = false;  ///< it is known once, and for ever
 };
 
 /// How far a gripper or a joint of the map is open, over time.
@@ -66,6 +67,7 @@ struct PoseFile {
   bool counts_frames = false;    ///< its times, in a unit of time, are whole and grow by one each
   std::size_t rows = 0, zeros = 0;  ///< zeros: poses at 0, 0, 0, which the map says are none
   double first_s = 0, last_s = 0;   ///< of all rows, also of those in which nothing is tracked
+  std::vector<double> rows_s;       ///< their times, where what is lost is lost in rows
 };
 
 /// The bodies of the map, without poses. One that is two entities is an error.

@@ -81,7 +81,7 @@ class CsvPoseReader {
       Complain({1, 1}, fmt::format("{} lines; the header is on line {}", line_, header_line_));
     if (!problems_.empty()) return;
     if (poses.first_s != 0) BeginAtZero(poses);
-    if (poses.rows < 2)
+    if (poses.rows < map_.LeastPoses())
       return Complain({line_, 1},
                       grammar::CountOf(poses.rows, "row") + "; a recording has at least 2");
     ComposeMarkers(map_, poses, map_errors_);
@@ -418,6 +418,7 @@ class CsvPoseReader {
     before->second = row_s_ = t_s;
     poses.first_s = std::min(poses.first_s, t_s);
     poses.last_s = std::max(poses.last_s, t_s);
+    if (map_.lost == Lost::kInRows && !streams_) poses.rows_s.push_back(t_s);
     ++poses.rows;
     for (std::size_t i = 0; i < poses.openings.size(); ++i) {
       if (!has_bodies || name == BodyOf(poses.openings[i]))

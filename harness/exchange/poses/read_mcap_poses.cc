@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <iterator>
 #include <set>
+#include <tuple>
 
 #include "grammar/base/diagnostic.h"
 #include "harness/base/base/input_files.h"
@@ -324,6 +325,8 @@ class McapPoseReader {
     const auto bridge_ns = static_cast<std::int64_t>(map_.bridge_s * 1e9);
     std::vector<std::vector<TimedPose>> all;
     std::optional<std::int64_t> first, last;
+    if (const auto& rows = series_->rows_ns; !rows.empty())
+      std::tie(first, last) = std::pair(std::ranges::min(rows), std::ranges::max(rows));
     for (const FrameLink* body : found_) {
       all.push_back(series_->tree.InFrame(*body, *world, bridge_ns));
       if (all.back().size() < 2) continue;
@@ -331,6 +334,7 @@ class McapPoseReader {
       last = std::max(last.value_or(all.back().back().ns), all.back().back().ns);
     }
     if (!first) return;  // refused, each by its name
+    for (const std::int64_t ns : series_->rows_ns) poses.rows_s.push_back(Seconds(ns - *first));
     poses.last_s = Seconds(*last - *first);
     if (poses.last_s > kMostDuration_s)
       return Fail(
@@ -339,6 +343,7 @@ class McapPoseReader {
                       Seconds(*first), Seconds(*last)));
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (all[i].size() == 1 && IsFixed(*found_[i], *world)) {  // it stands still all the time
+        poses.bodies[i].stands = true;
         all[i].push_back(all[i].front());
         all[i].front().ns = *first;
         all[i].back().ns = *last;
