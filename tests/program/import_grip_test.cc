@@ -7,6 +7,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <tuple>
 
 #include "tests/program/carried_cup.h"
 #include "tests/program/import_csv.h"
@@ -94,6 +95,29 @@ TEST(ImportGrip, ColumnsBecomeFractionsOfOpenAndClosed) {
   const Said doors =
       Prehend({"episode", "resegment", (folder / "take.jsonl").string(), "--grammar", "furniture"});
   EXPECT_NE(doors.out.find("opening"), std::string::npos) << doors.out << doors.err;
+}
+
+TEST(ImportGrip, APositionIsInMetresOrRadians) {
+  std::string csv = Csv();
+  for (const auto& [unit, says, position] :
+       std::vector<std::tuple<const char*, const char*, double>>{{"m", "", 1.3},
+                                                                 {"mm", "", 0.0013},
+                                                                 {"mm", ", unit: rad", 1.3},
+                                                                 {"m", ", unit: cm", 0.013},
+                                                                 {"m", ", unit: deg", 0.022689}}) {
+    const auto folder = FreshFolder("import_grip");
+    const std::string map =
+        Replaced(Replaced(kMap, "unit: m", std::string("unit: ") + unit + "\nsure: [unit]"),
+                 "open: 1.3}", std::string("open: 1.3") + says + "}");
+    const Said said = ImportCsv(folder, csv, map);
+    ASSERT_EQ(said.exit_code, 0) << said.err;
+    EXPECT_NEAR(FactsAt(folder, 4).position, position, 1e-6) << unit << says;
+    EXPECT_EQ(
+        said.err.find("'door': 'hinge' counts as in the file's unit of positions; if it turns, or "
+                      "has another, unit: rad beside 'open' says it") != std::string::npos,
+        unit == std::string("mm") && *says == 0)
+        << said.err;
+  }
 }
 
 TEST(ImportGrip, AnActionIsOneAndBeyondTheEndsNothingMore) {

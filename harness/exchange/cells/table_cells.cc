@@ -109,6 +109,22 @@ std::optional<double> SecondsOfIsoTime(std::string_view cell) {
   return 86400 * days + 3600 * hour + 60 * minute + *seconds - *zone;
 }
 
+std::optional<Unit> UnitCalled(std::string name) {
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+  static const std::map<std::string, Unit> kUnits = {
+      {"m", Unit::kMetre},       {"meters", Unit::kMetre},
+      {"cm", Unit::kCentimetre}, {"centimeters", Unit::kCentimetre},
+      {"mm", Unit::kMillimetre}, {"millimeters", Unit::kMillimetre},
+      {"inches", Unit::kInch},   {"in", Unit::kInch}};
+  const auto found = kUnits.find(name);
+  return found == kUnits.end() ? std::nullopt : std::optional(found->second);
+}
+
+double SiPerUnit(Unit unit) {
+  constexpr std::array kSi = {1.0, 1e-2, 1e-3, 0.0254, 1.0, static_cast<double>(EIGEN_PI) / 180};
+  return kSi[static_cast<std::size_t>(unit)];
+}
+
 std::size_t NumbersOf(OrientationForm form) {
   constexpr std::array<std::size_t, 4> kNumbers = {4, 3, 9, 3};
   return kNumbers[static_cast<std::size_t>(form)];

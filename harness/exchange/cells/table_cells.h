@@ -32,6 +32,13 @@ inline double AfterMidnight(double time, double first) {
   return time < 2 * kHalfDay_s && time < first - kHalfDay_s ? time + 2 * kHalfDay_s : time;
 }
 
+/// Of positions; of joints also the last two.
+enum class Unit { kMetre, kCentimetre, kMillimetre, kInch, kRadian, kDegree };
+/// "mm", "Meters"
+std::optional<Unit> UnitCalled(std::string name);
+/// In m or rad.
+double SiPerUnit(Unit unit);
+
 // Numbers that say how something is turned: quaternions, angles, matrices. Tested by
 // tests/harness/exchange/cells/orientation_test.cc
 

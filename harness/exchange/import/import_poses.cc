@@ -84,10 +84,9 @@ class FrameMaker {
             ->trigger = 1 - within;
         continue;
       }
-      const Opening& said = series[i].Of(map_);
       grammar::EntitySample& part = frame.entities[series[i].entity];
       part.joint_fraction = within;
-      part.joint_position = said.closed + open * (said.open - said.closed);
+      part.joint_position = series[i].Of(map_).PositionAt(open, map_);
     }
   }
 
@@ -303,6 +302,11 @@ class Importer {
       errors_.Add(said.where, entity.name + ": " + doubt.text, doubt.hint);
     else if (!doubt.text.empty())
       Warn(fmt::format("'{}': {}", entity.name, doubt.text));
+    if (!series.is_grip && !said.unit && map_.MetresPerUnit() != 1)
+      Warn(
+          fmt::format("'{}': '{}' counts as in the file's unit of positions; if it turns, or has "
+                      "another, unit: rad beside 'open' says it",
+                      entity.name, said.Names()));
     const auto [least, most] =
         std::ranges::minmax(series.samples, {}, &OpeningSeries::Sample::open);
     imported_.openings +=

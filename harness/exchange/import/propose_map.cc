@@ -142,7 +142,7 @@ class MapProposer {
     if (layout_) {
       says_unit_ = layout_->unit && layout_->says_unit;
       if (layout_->unit && !says_unit_)
-        unit_ = *layout_->unit == LengthUnit::kMillimetre ? "unit: mm" : "unit: m";
+        unit_ = *layout_->unit == Unit::kMillimetre ? "unit: mm" : "unit: m";
       if (!layout_->columns.axis_angle.empty())
         doubts_.push_back(
             "three angles are read as axis times angle; if they are Euler angles, the map says "
@@ -302,7 +302,7 @@ class MapProposer {
     if (axes.signs.empty() && unit_.ends_with(" cm") &&
         unit_why_.starts_with("by")) {  // too near to each other, perhaps
       ImportMap larger = map;
-      larger.unit->value = LengthUnit::kInch;
+      larger.unit->value = Unit::kInch;
       axes = GuessAxes(poses, larger, /*any_sign=*/true);
     }
     if (guessed(axes_, axes)) {

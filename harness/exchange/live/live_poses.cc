@@ -161,9 +161,8 @@ void LivePoses::AddOpenings() {
       triggers_[opening.entity] = 1 - std::clamp(open, 0.0, 1.0);
       continue;
     }
-    const Opening& said = opening.Of(map);
     samples_[opening.entity].joint_fraction = std::clamp(open, 0.0, 1.0);
-    samples_[opening.entity].joint_position = said.closed + open * (said.open - said.closed);
+    samples_[opening.entity].joint_position = opening.Of(map).PositionAt(open, map);
   }
 }
 

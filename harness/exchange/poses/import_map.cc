@@ -305,6 +305,10 @@ double Opening::FractionOf(std::span<const double> numbers) const {
   return (sum - closed) / (open - closed);
 }
 
+double Opening::PositionAt(double fraction, const ImportMap& map) const {
+  return (closed + fraction * (open - closed)) * (unit ? SiPerUnit(*unit) : map.MetresPerUnit());
+}
+
 std::string Opening::Names() const { return NamesOf(from); }
 
 bool ImportMap::IsSure(Warning warning) const {
@@ -341,9 +345,7 @@ OrientationFormat ImportMap::Orientation() const {
 }
 
 double ImportMap::MetresPerUnit() const {
-  if (metres_per_unit) return metres_per_unit->value;
-  constexpr std::array kMetres = {1.0, 1e-2, 1e-3, 0.0254};
-  return kMetres[static_cast<std::size_t>(unit->value)];
+  return metres_per_unit ? metres_per_unit->value : SiPerUnit(unit->value);
 }
 
 double ImportMap::SecondsPerUnit() const {

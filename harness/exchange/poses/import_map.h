@@ -20,7 +20,6 @@ namespace prehend::exchange {
 
 /// What is imported, by the ending of its name. Bags of ROS 1 hold messages as MCAP files do.
 enum class PoseFormat { kCsv, kBvh, kMcap, kHdf5, kJson, kNpz, kC3d };
-enum class LengthUnit { kMetre, kCentimetre, kMillimetre, kInch };
 enum class TimeUnit { kSecond, kMillisecond, kMicrosecond, kNanosecond, kFrame, kIso };
 enum class Lost { kRefuse, kHold, kUnknown, kInRows };
 enum class OutlierRule { kKeep, kLost };
@@ -70,15 +69,20 @@ struct Hdf5Keys {
 /// "left + right"
 std::string NamesOf(const std::vector<Located<std::string>>& all);
 
+struct ImportMap;
+
 /// Numbers of the file that say how far a gripper or a joint is open.
 struct Opening {
   Where where;
   std::vector<Located<std::string>> from;  ///< of several, their sum counts
   bool sum_abs = false;                    ///< the sum of them without their signs
   double open = 0, closed = 0;             ///< what the file has there, in its own unit
+  std::optional<Unit> unit;                ///< of a joint; none: that of positions
 
   /// Of the numbers at one time, in the order of `from`: 0 closed .. 1 open, and beyond.
   double FractionOf(std::span<const double> numbers) const;
+  /// Of a joint that is so far open, in m or rad.
+  double PositionAt(double fraction, const ImportMap& map) const;
   std::string Names() const;  ///< "left + right"
 };
 
@@ -134,7 +138,7 @@ struct ImportMap {
   int version = 1;
   std::string episode;  ///< "": as the file of poses is called
   Located<std::string> grammar = {"pick_and_place_from_motion", {}};
-  std::optional<Located<LengthUnit>> unit;         ///< this, or
+  std::optional<Located<Unit>> unit;               ///< this, or
   std::optional<Located<double>> metres_per_unit;  ///< this
   std::optional<Located<int>> axes;  ///< which axis of the file is up: 0 x, 1 y, 2 z; this or
   std::optional<Located<Eigen::Vector3d>> up;  ///< the direction of up in the file's axes, or both

@@ -92,6 +92,15 @@ ValueFormat<std::string> CellFormat() {
        }});
 }
 
+/// The first ones.
+ValueFormat<Unit> Units(std::ptrdiff_t count) {
+  using enum Unit;
+  const std::vector<std::pair<std::string, Unit>> all = {{"m", kMetre},       {"cm", kCentimetre},
+                                                         {"mm", kMillimetre}, {"inch", kInch},
+                                                         {"rad", kRadian},    {"deg", kDegree}};
+  return Choice<Unit>({all.begin(), all.begin() + count});
+}
+
 ValueFormat<Opening> OpeningFormat(const char* noun) {
   return StructFormat<Opening>(noun)
       .Required("from", &Opening::from, OneOrMoreNames(),
@@ -99,6 +108,7 @@ ValueFormat<Opening> OpeningFormat(const char* noun) {
       .Optional("sum_abs", &Opening::sum_abs, Flag(), "They are added without their signs.")
       .Required("open", &Opening::open, Number(-1e9, 1e9), "The value when it is open.")
       .Required("closed", &Opening::closed, Number(-1e9, 1e9), "The value when it is closed.")
+      .Optional("unit", &Opening::unit, Units(6), "Of a joint: what these are in.")
       .format();
 }
 
@@ -196,12 +206,7 @@ ValueFormat<ImportMap> MapFormat() {
       .Required("import", &M::version, Integer<int>(1, 1), "The version of this format.")
       .Optional("episode", &M::episode, name, "The recording's name.")
       .Optional("grammar", &M::grammar, name, "The grammar that segments it.")
-      .Optional("unit", &M::unit,
-                Choice<LengthUnit>({{"m", LengthUnit::kMetre},
-                                    {"cm", LengthUnit::kCentimetre},
-                                    {"mm", LengthUnit::kMillimetre},
-                                    {"inch", LengthUnit::kInch}}),
-                "The unit of positions in the file.")
+      .Optional("unit", &M::unit, Units(4), "The unit of positions in the file.")
       .Optional("metres_per_unit", &M::metres_per_unit, Number(1e-6, 1e3),
                 "The same as a number, where it is none of these.")
       .AtMostOneOf({"unit", "metres_per_unit"})

@@ -237,7 +237,7 @@ std::optional<TableLayout> QualisysOf(const Lines& lines) {
     while (layout.names.back().empty() || layout.names.back().ends_with(' '))
       layout.names.pop_back();
   }
-  layout.unit = LengthUnit::kMillimetre;
+  layout.unit = Unit::kMillimetre;
   layout.says_unit = false;
   layout.zero_is_missing = true;
   layout.time_unit = TimeUnit::kFrame;
@@ -294,7 +294,7 @@ std::optional<TableLayout> EurocOf(const Lines& lines) {
   };
   layout.columns.time = {"timestamp", {}};
   layout.columns.position = {column("p_", "_x"), column("p_", "_y"), column("p_", "_z")};
-  layout.unit = LengthUnit::kMetre;
+  layout.unit = Unit::kMetre;
   layout.time_unit = TimeUnit::kNanosecond;
   if (column("q_", "_w").value.empty()) return layout;  // of a tracker of one point
   layout.columns.quaternion = {column("q_", "_w"), column("q_", "_x"), column("q_", "_y"),
@@ -315,7 +315,7 @@ std::optional<TableLayout> RowsOf(const Lines& lines) {
   TableLayout layout{.yields = true,
                      .separator = separator,
                      .first_row = static_cast<int>(row) + 1,
-                     .unit = LengthUnit::kMetre,
+                     .unit = Unit::kMetre,
                      .says_unit = false};
   if (words.size() == 8) {
     layout.name = "a trajectory of TUM";
@@ -401,17 +401,6 @@ void Complete(TableLayout& layout, Where where, ImportMap& map, DiagnosticList& 
 }
 
 }  // namespace
-
-std::optional<LengthUnit> UnitCalled(std::string name) {
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
-  static const std::map<std::string, LengthUnit> kUnits = {
-      {"m", LengthUnit::kMetre},       {"meters", LengthUnit::kMetre},
-      {"cm", LengthUnit::kCentimetre}, {"centimeters", LengthUnit::kCentimetre},
-      {"mm", LengthUnit::kMillimetre}, {"millimeters", LengthUnit::kMillimetre},
-      {"inches", LengthUnit::kInch},   {"in", LengthUnit::kInch}};
-  const auto found = kUnits.find(name);
-  return found == kUnits.end() ? std::nullopt : std::optional(found->second);
-}
 
 std::optional<TableLayout> LayoutOf(std::string_view text) {
   const Lines lines = HeadOf(text);

@@ -22,7 +22,7 @@ struct TableLayout {
   std::vector<std::string> names;    ///< of the columns
   std::vector<std::string> turning;  ///< bodies with orientations
   Columns columns;
-  std::optional<LengthUnit> unit;
+  std::optional<Unit> unit;
   bool says_unit = true;  ///< else it is usual
   std::optional<TimeUnit> time_unit;
   std::optional<double> rate_hz;
@@ -33,9 +33,6 @@ struct TableLayout {
   std::string error;  ///< how the tracker's error of a body is called
   std::vector<std::string> notes;
 };
-
-/// "mm", "Meters"
-std::optional<LengthUnit> UnitCalled(std::string name);
 
 /// By the first lines of a file.
 std::optional<TableLayout> LayoutOf(std::string_view text);
