@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <numbers>
@@ -374,6 +376,42 @@ TEST(Joints, AMotionIsOneHoweverRareFramesAre) {
     ExpectGrasp(found, "closing(drawer)", 4, 5.5, within_s);
     EXPECT_FALSE(found.contains("opening(drawer)'") || found.contains("closing(drawer)'"));
   }
+}
+
+// It gets less far with every swing.
+TEST(Joints, SwingsAreMotionsOfTheirOwnAndReboundsAreNone) {
+  const auto watch = [](const std::function<double(double)>& open) {
+    return Watch(
+        "joints", {},
+        {{.name = "drawer", .size_m = {0.3, 0.4, 0.2}, .at = Stays({0.2, 0, 0.4}), .open = open}},
+        4, 1.0 / 250);
+  };
+  for (const double half_s : {0.1, 0.15, 0.25}) {  // of a period
+    const Found swings = watch([&](double s) {
+      constexpr std::array kTurns = {0.0, 0.8, 0.3, 0.6, 0.45, 0.5, 0.5};
+      const double since = std::clamp((s - 1) / half_s, 0.0, kTurns.size() - 1.001);
+      const auto last = static_cast<std::size_t>(since);
+      return std::lerp(kTurns[last], kTurns[last + 1],
+                       (1 - std::cos(std::numbers::pi * (since - std::floor(since)))) / 2);
+    });
+    ExpectGrasp(swings, "opening(drawer)", 1, 1 + half_s, 0.02);
+    ExpectGrasp(swings, "closing(drawer)", 1 + half_s, 1 + 2 * half_s, 0.02);
+    ExpectGrasp(swings, "opening(drawer)'", 1 + 2 * half_s, 1 + 3 * half_s, 0.02);
+    ExpectGrasp(swings, "closing(drawer)'", 1 + 3 * half_s, 1 + 4 * half_s, 0.02);
+    EXPECT_FALSE(swings.contains("opening(drawer)''")) << half_s;
+  }
+  for (const double rebound : {0.0015, 0.015}) {  // and down again within 0.1 s
+    const Found shut = watch([&](double s) {
+      return Line({{1, 0.9}, {1.5, 0}, {1.54, rebound}, {1.6, 0}}, s);
+    });
+    ExpectGrasp(shut, "closing(drawer)", 1, 1.5, 0.01);
+    EXPECT_FALSE(shut.contains("opening(drawer)"));
+  }
+  const Found halts = watch([](double s) {  // goes on after 0.1 s, in which it comes back a little
+    return Line({{1, 0}, {1.5, 0.5}, {1.55, 0.48}, {1.6, 0.48}, {2, 0.9}}, s);
+  });
+  ExpectGrasp(halts, "opening(drawer)", 1, 2, 0.01);
+  EXPECT_FALSE(halts.contains("opening(drawer)'"));
 }
 
 TEST(Reached, ATargetThatNobodyGrasps) {

@@ -92,8 +92,8 @@ TEST(DefinitionBands, AreThoseOfThePage) {
 }
 
 TEST(DefinitionBands, HoldEveryParameterOfTheGrammarsThatAreJudged) {
-  std::set<std::string> on_the_page = {"grip_sides", "grip_window", "lift_sky",  "closed_below",
-                                       "half_below", "open_from",   "band_slack"};
+  std::set<std::string> on_the_page = {"grip_sides", "grip_window", "lift_sky",   "closed_below",
+                                       "half_below", "open_from",   "band_slack", "part_moment"};
   std::map<std::string, double> parameters;
   for (const char* grammar : {"pick_and_place", "furniture"}) {
     const auto compiled = episode::LoadGrammar(PREHEND_SOURCE_DIR, grammar);
