@@ -183,9 +183,18 @@ struct FrameChanges {
 
 inline bool IsTracked(const EntitySample& look) { return !std::isnan(look.p_WB_m.x()); }
 
+/// `vertical_speed_m_per_s` where no contact point is known: the upper entity is close to it. Side
+/// by side, nothing bears load.
+inline double SpeedAtTheUpper(const Touch& touch, const EntitySample& a, const EntitySample& b) {
+  const bool is_beside = touch.up_on_a == 0 && touch.up_on_b == 0;
+  if (is_beside || !IsTracked(a) || !IsTracked(b)) return 0;
+  return VerticalSpeedBetween(a, b, (touch.up_on_a >= touch.up_on_b ? a : b).p_WB_m);
+}
+
+inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+
 /// All that is measured of it is no number.
 inline EntitySample NotTracked() {
-  constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
   EntitySample look;
   look.p_WB_m.setConstant(kNotKnown);
   look.q_WB.coeffs().setConstant(kNotKnown);

@@ -255,7 +255,8 @@ Lowering::Typed Lowering::LowerValue(const Scope::Value& value) {
   if (value.expr == nullptr) return value.placeholder;
   const GrammarText* const inner_source = std::exchange(source_, value.source);
   const Scope* const inner_scope = std::exchange(scope_, value.scope);
-  Typed typed = Lower(*value.expr);
+  const bool is_role = value.expr->kind == Expr::Kind::kName && FindRole(value.expr->text) != kNone;
+  Typed typed = is_role ? Position(*value.expr) : Lower(*value.expr);
   if (!typed.bad && typed.type != Type::kNumber) typed = Position(*value.expr);
   source_ = inner_source;
   scope_ = inner_scope;

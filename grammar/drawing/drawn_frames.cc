@@ -66,11 +66,8 @@ Frame DrawnFrames::At(Tick tick) {
     collision_spheres_[hand.entity] = {.p_W_m = looks_[hand.entity].p_WB_m, .radius_m = 0};
     hand.collision_spheres = {&collision_spheres_[hand.entity], 1};
   }
-  for (Touch& touch : touches_) {
-    const EntitySample &a = looks_[touch.a], &b = looks_[touch.b];
-    touch.vertical_speed_m_per_s =
-        VerticalSpeedBetween(a, b, (touch.up_on_a >= touch.up_on_b ? a : b).p_WB_m);
-  }
+  for (Touch& touch : touches_)
+    touch.vertical_speed_m_per_s = SpeedAtTheUpper(touch, looks_[touch.a], looks_[touch.b]);
   std::sort(touches_.begin(), touches_.end(), [](const Touch& a, const Touch& b) {
     return std::pair(a.a, a.b) < std::pair(b.a, b.b);
   });

@@ -69,6 +69,10 @@ class Finder {
       : owner_(std::move(owner)), defines_(defines), found_(found) {}
 
   void Number(Expr& expr, const std::string& clause, bool is_count = false) {
+    if (expr.text == "-" && expr.args.size() == 1 && expr.args[0].kind == Expr::Kind::kQuantity) {
+      expr.kind = Expr::Kind::kQuantity;
+      expr.quantity = {-expr.args[0].quantity.value, expr.args[0].quantity.dimension};
+    }
     if (expr.kind == Expr::Kind::kQuantity || expr.kind == Expr::Kind::kName)
       return found_.push_back({owner_, clause, expr.place, is_count, &expr});
     if (expr.kind == Expr::Kind::kCall && !defines_.contains(expr.text)) return;

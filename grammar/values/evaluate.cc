@@ -13,7 +13,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kBoundless = std::numeric_limits<double>::infinity();
-constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
 bool IsPosition(const Program& program, NodeId index) {
   const Node& node = program.nodes[index];

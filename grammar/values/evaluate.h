@@ -139,6 +139,7 @@ class Evaluator {
     FrameNumber late = 0;
   };
   std::optional<Window> WindowAround(const Node& node, FrameNumber frame) const;
+  bool AreSeenIn(const Window& window, const Node& node, const View& view) const;
   double SecondsBetween(FrameNumber early, FrameNumber late) const;
   Eigen::Vector2d WayOn(const Node& node, const View& view, FrameNumber early,
                         FrameNumber late) const;

@@ -2,6 +2,7 @@
 // Signals of motion against another entity, and over a window of time.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -43,6 +44,17 @@ std::optional<Evaluator::Window> Evaluator::WindowAround(const Node& node,
   return known.window;
 }
 
+// Nobody who is lost in the window has a way in it.
+bool Evaluator::AreSeenIn(const Window& window, const Node& node, const View& view) const {
+  for (std::size_t role = 0; role < node.roles.size() && node.roles[role] != kNone; ++role) {
+    const int who = Entity(node, view, role);
+    if (!history_.WasLost(who)) continue;
+    for (FrameNumber frame = window.early; frame <= window.late; ++frame)
+      if (!IsTracked(who, frame)) return false;
+  }
+  return true;
+}
+
 double Evaluator::SecondsBetween(FrameNumber early, FrameNumber late) const {
   return history_.Seconds(history_.At(late).tick - history_.At(early).tick);
 }
@@ -54,6 +66,10 @@ std::optional<double> Evaluator::Rate(const Node& node, const View& view) const 
   const std::optional<double> before = Number(node.args[0], view.At(window->early));
   const std::optional<double> after = Number(node.args[0], view.At(window->late));
   if (!before || !after) return std::nullopt;
+  const bool may_be_lost = std::ranges::any_of(
+      view.instance.entities, [&](int entity) { return entity >= 0 && history_.WasLost(entity); });
+  for (FrameNumber at = window->early + 1; may_be_lost && at < window->late; ++at)
+    if (std::isnan(Number(node.args[0], view.At(at)).value_or(0))) return kNotKnown;
   return (*after - *before) / SecondsBetween(window->early, window->late);
 }
 
@@ -62,6 +78,7 @@ std::optional<double> Evaluator::SpeedOver(const Node& node, const View& view) c
   const std::optional<Window> window = WindowAround(node, view.frame);
   if (!window) return std::nullopt;
   if (window->early == window->late) return 0;
+  if (!AreSeenIn(*window, node, view)) return kNotKnown;
   const int a = Entity(node, view, 0);
   const auto place = [&](FrameNumber frame) -> Vector3d {
     return node.op == Op::kSpeedOver ? history_.Look(a, frame).p_WB_m
@@ -157,6 +174,7 @@ std::optional<double> Evaluator::DriftAlong(const Node& node, const View& view) 
   const std::optional<Window> window = WindowAround(node, view.frame);
   if (!window) return std::nullopt;
   if (window->early == window->late) return 0;
+  if (!AreSeenIn(*window, node, view)) return kNotKnown;
   const TouchPlace touch = TouchPlaceOf(node, view);
   const auto look = [&](int role, FrameNumber frame) -> const EntitySample& {
     return history_.Look(Entity(node, view, role), frame);
@@ -195,6 +213,7 @@ Evaluator::TouchPlace Evaluator::TouchPlaceOf(const Node& node, const View& view
 std::optional<double> Evaluator::TurnRate(const Node& node, const View& view) const {
   const std::optional<Window> window = WindowAround(node, view.frame);
   if (!window) return std::nullopt;
+  if (!AreSeenIn(*window, node, view)) return kNotKnown;
   const Vector2d before = WayOn(node, view, window->early, view.frame);
   const Vector2d after = WayOn(node, view, view.frame, window->late);
   const std::optional<double> shortest_m = Number(node.args[0], view);
@@ -243,13 +262,24 @@ std::optional<double> Evaluator::Rotation(const Node& node, const View& view) co
   return 2 * std::atan2(turn.vec().norm(), std::abs(turn.w()));
 }
 
+// Its turns are counted from frame to frame: those of the window alone are known up to full ones.
 std::optional<double> Evaluator::Spin(const Node& node, const View& view) const {
   const std::optional<Window> window = WindowAround(node, view.frame);
   if (!window) return std::nullopt;
   if (window->early == window->late) return 0;
-  const Eigen::Quaterniond turn = FromVector(OrientationOn(node, view, window->early)).conjugate() *
-                                  FromVector(OrientationOn(node, view, window->late));
-  return Twist(turn, node.name) / SecondsBetween(window->early, window->late);
+  if (!AreSeenIn(*window, node, view)) return kNotKnown;
+  const auto turned = [&](FrameNumber early, FrameNumber late) {
+    return Twist(FromVector(OrientationOn(node, view, early)).conjugate() *
+                     FromVector(OrientationOn(node, view, late)),
+                 node.name);
+  };
+  const double turn_rad = turned(window->early, window->late);
+  double counted_rad = 0;
+  for (FrameNumber frame = window->early; frame < window->late; ++frame)
+    counted_rad += turned(frame, frame + 1);
+  constexpr double kFull_rad = 2 * std::numbers::pi;
+  return (turn_rad + kFull_rad * std::round((counted_rad - turn_rad) / kFull_rad)) /
+         SecondsBetween(window->early, window->late);
 }
 
 Vector3d Evaluator::PositionOn(int a, int b, FrameNumber frame) const {

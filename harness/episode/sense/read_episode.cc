@@ -446,7 +446,9 @@ class EpisodeReader {
                          .up_on_a = entry.up_on_a,
                          .up_on_b = entry.up_on_b.value_or(-entry.up_on_a),
                          .normal_force_n = entry.force_n};
-    touch.vertical_speed_m_per_s = entry.vertical_speed_m_per_s.value_or(SpeedAtTheUpper(touch));
+    touch.vertical_speed_m_per_s = entry.vertical_speed_m_per_s.value_or(
+        SpeedAtTheUpper(touch, now_.entities[static_cast<std::size_t>(a)],
+                        now_.entities[static_cast<std::size_t>(b)]));
     if (entry.at_m && entry.normal) {
       touch.p_W_m = *entry.at_m;
       touch.nhat_BA_W = entry.normal->normalized();
@@ -465,14 +467,6 @@ class EpisodeReader {
       return errors.Add(entry.a.where, fmt::format("the touch of '{}' and '{}' is given twice",
                                                    entry.a.value, entry.b.value));
     now_.touches.push_back(touch);
-  }
-
-  /// Where no contact point is recorded, the position of the upper entity is close to it.
-  double SpeedAtTheUpper(const grammar::Touch& touch) const {
-    const grammar::EntitySample &a = now_.entities[static_cast<std::size_t>(touch.a)],
-                                &b = now_.entities[static_cast<std::size_t>(touch.b)];
-    if (!IsTracked(a) || !IsTracked(b)) return 0;
-    return grammar::VerticalSpeedBetween(a, b, (touch.up_on_a >= touch.up_on_b ? a : b).p_WB_m);
   }
 
   std::uint32_t SetBit(const Located<std::string>& set, int a, int b,

@@ -323,10 +323,14 @@ double Clauses::Nearness(grammar::NodeId node, const Viewpoint& at, bool truth, 
     return rule.form() == grammar::Form::kAny ? NearestMember(target, at.frame, depth + 1) : 0;
   }
   const std::optional<Measured> measured = Measure(node, at);
-  if (!measured) return 0;
-  const double scale = std::max(std::abs(measured->value), std::abs(measured->limit));
-  const double off = std::abs(measured->value - measured->limit);
-  return std::isfinite(scale) && scale > 0 ? 0.9 * (1 - std::min(1.0, off / scale)) : 0;
+  return measured ? 0.9 * (1 - Missed(measured->value, measured->limit)) : 0;
+}
+
+double Missed(double value, double limit) {
+  const double off = std::abs(value - limit);
+  const double scale = std::max(std::abs(value), std::abs(limit));
+  if (off == 0) return 0;
+  return std::isfinite(scale) ? 0.99 * std::min(1.0, off / scale) + 0.01 * off / (1 + off) : 1;
 }
 
 }  // namespace prehend::show

@@ -82,6 +82,10 @@ struct WhyMissing {
       nearest;  ///< of the same name and entities, at other times; without reasons
 };
 
+/// By how much a value missed its limit, 0 to 1: as a share of the larger of the two, of values on
+/// the other side of 0 by the distance.
+double Missed(double value, double limit);
+
 using Viewpoint = grammar::ReplayMonitor::Viewpoint;
 
 class Clauses {

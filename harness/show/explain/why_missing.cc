@@ -191,10 +191,8 @@ MissingReasons::Weighed MissingReasons::Weigh(Reason reason) {
   const Reason* failure = FirstFailure(told.reasons);
   if (failure == nullptr) return told;
   told.missed = std::numeric_limits<double>::infinity();
-  if (const std::optional<Reading>& reading = failure->reading) {
-    const double scale = std::max(std::abs(reading->value), std::abs(reading->limit));
-    told.missed = scale > 0 ? std::abs(reading->value - reading->limit) / scale : 0;
-  }
+  if (const std::optional<Reading>& reading = failure->reading)
+    told.missed = Missed(reading->value, reading->limit);
   return told;
 }
 

@@ -432,13 +432,14 @@ class Measuring {
         here = std::max(here, lowest);
       }
     }
-    // Of spans that begin with the episode, only the shortest was looked at.
-    if (how != Lasts::kLongerOrCut) return opened;
-    double lowest = kInfinity;
-    for (FrameNumber frame = 0; frame < frames; ++frame) {
-      lowest = std::min(lowest, values[static_cast<std::size_t>(frame)]);
-      double& here = opened[static_cast<std::size_t>(frame)];
-      here = std::max(here, lowest);
+    // Where frames are irregular, a longer one may be the only one that ends here.
+    for (FrameNumber last = 0; last < frames; ++last) {
+      double lowest = values[static_cast<std::size_t>(last)];
+      FrameNumber begin = last;
+      while (begin > 0 && !lasts(begin, last + 1))
+        lowest = std::min(lowest, values[static_cast<std::size_t>(--begin)]);
+      double& here = opened[static_cast<std::size_t>(last)];
+      if (lasts(begin, last + 1)) here = std::max(here, lowest);
     }
     return opened;
   }

@@ -83,6 +83,12 @@ TEST(NotTracked, WindowsThatReachIntoTheGapHaveNoValueEither) {
   for (const std::string condition :
        {"rate(height(cup), 100 ms) < 1 m/s", "speed(cup, 100 ms) < 1 m/s"})
     EXPECT_EQ(Held(While(condition), {Scene::kCup}), "0..250; 550..1000; ") << condition;
+  // Nor do those in which both ends are seen.
+  for (const std::string signal :
+       {"rate(height(cup), 400 ms) < 1 m/s", "speed(cup, 400 ms) < 1 m/s",
+        "relative_speed(cup, hand, 400 ms) < 1 m/s", "spin(cup, z, 400 ms) < 1 rad/s",
+        "turn_rate(cup, hand, 400 ms) < 1 rad/s", "drift_along(cup, hand, 400 ms) < 1 m/s"})
+    EXPECT_EQ(Held(While(signal), {Scene::kCup}), "0..100; 700..1000; ") << signal;
 }
 
 TEST(NotTracked, EitherOneOfTwoIsEnough) {

@@ -131,13 +131,16 @@ class Meaning {
     return e_.lost[frame] ? std::numeric_limits<double>::quiet_NaN() : e_.height_m[frame];
   }
 
-  // From the last frame at least half the window earlier to the first one so much later, in m/s.
+  // From the last frame at least half the window earlier to the first one so much later, in m/s; no
+  // number where it is lost in between.
   double Rate(int frame, Tick window) const {
     const Tick half = (window + 1) / 2;
     int early = frame, late = frame;
     while (early > 0 && e_.ticks[early] > e_.ticks[frame] - half) --early;
     while (late + 1 < n_ && e_.ticks[late] < e_.ticks[frame] + half) ++late;
     if (early == late) return 0;
+    for (int i = early; i <= late; ++i)
+      if (e_.lost[i]) return Height(i);
     return (Height(late) - Height(early)) /
            (static_cast<double>(e_.ticks[late] - e_.ticks[early]) / 1000);
   }

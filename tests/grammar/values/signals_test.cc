@@ -150,6 +150,11 @@ TEST(Signals, RotationIsMeasuredFromTheBeginAndSpinOverAWindow) {
   EXPECT_EQ(EndsWhenTurning("spin(cup, z, 100 ms) < 9.999 rad/s"), 1000);
   EXPECT_EQ(EndsWhenTurning("spin(cup, z, 100 ms) < 10.001 rad/s"), -1);
   EXPECT_EQ(EndsWhenTurning("abs(spin(cup, y, 100 ms)) > 0.001 rad/s"), 1000);
+  for (const char* window : {"400 ms", "800 ms", "2 s"}) {  // more than half a turn
+    const std::string spin = "spin(cup, z, " + std::string(window) + ")";
+    EXPECT_EQ(EndsWhenTurning(spin + " < 9.999 rad/s"), 1000);
+    EXPECT_EQ(EndsWhenTurning(spin + " < 10.001 rad/s"), -1);
+  }
 }
 
 // Where `drift_along` of the cup on the tray is above 1 cm/s, when the cup is at x_m(t) and a frame
