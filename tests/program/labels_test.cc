@@ -238,6 +238,33 @@ TEST_F(Labelled, MarginsOfSomeParametersOnly) {
       << unknown.err;
 }
 
+// One recording is right where the other one is wrong: every setting has the same F1.
+TEST_F(Labelled, WhatOneRecordingGainsAndAnotherLosesIsAnEffect) {
+  WriteFile(Path("g.grammar"),
+            "grammar g\nparam reach = 10 cm\n"
+            "event near(hand: Hand, cup: Cup) while distance(hand, cup) < reach\n");
+  std::vector<std::string> call = {"grammar", "margins"};
+  for (const std::string take : {"a", "b"}) {
+    std::string text = R"({"recording": 1, "episode": ")" + take +
+                       R"(", "ticks_per_second": 1000, "entities": {"cup": {"class": "Cup", )"
+                       R"("size_m": [0, 0, 0]}, "hand": {"hand": true, "size_m": [0, 0, 0]}}})";
+    for (int i = 0; i < 50; ++i)
+      text += "\n{\"tick\": " + std::to_string(100 * i) +
+              R"(, "samples": {"cup": {"at_m": [0, 0, 1]}, "hand": {"at_m": [)" +
+              (i >= 20 && i < 30 ? "0.005" : "0.3") + ", 0, 1]}}}";
+    WriteFile(Path(take + ".jsonl"), text + "\n{\"end_tick\": 5000}\n");
+    fs::create_directories(Path("labels"));
+    WriteFile(Path("labels/" + take + ".csv"),
+              std::string("begin_s,end_s,label\n") + (take == "a" ? "2,3,near\n" : "0,5,near\n"));
+    call.push_back(Path(take + ".jsonl"));
+  }
+  call.insert(call.end(), {"--truth", Path("labels"), "--grammar", Path("g.grammar")});
+  const Said said = Prehend(call);
+  EXPECT_TRUE(Has(said.out, "reach      0.1 m  50.0  <= 0.0125 m  >= 0.8 m  50.0  0.1 m"))
+      << said.out << said.err;
+  EXPECT_FALSE(Has(said.out, "without any effect")) << said.out;
+}
+
 // More than two seconds, on any machine: 241 settings.
 TEST_F(Labelled, ALongSweepSaysHowLongItTakes) {
   const Said said =

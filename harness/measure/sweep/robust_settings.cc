@@ -114,8 +114,9 @@ Margin MarginOf(const Axis& axis, std::span<const SweepPoint> points, std::size_
                 .f1 = points[own].f1,
                 .best = best->f1,
                 .best_at = axis.ValueText(static_cast<std::size_t>(best - points.begin()))};
+  // What one recording gains another one may lose.
   margin.has_effect = std::ranges::any_of(
-      points, [&](const SweepPoint& point) { return point.f1 != points[own].f1; });
+      points, [&](const SweepPoint& point) { return point.of_each != points[own].of_each; });
   const auto is_good = [&](std::size_t i) { return points[i].f1 >= best->f1 - within; };
   if (!is_good(own)) return margin;
   std::size_t from = own, to = own;

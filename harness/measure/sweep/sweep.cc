@@ -350,6 +350,7 @@ Result<SweepResult> Sweep(const std::vector<episode::Take>& takes, const SweepRe
         point.correct += judged.correct;
         point.extra += judged.extra;
         point.missed += judged.missed;
+        point.of_each.insert(point.of_each.end(), {judged.correct, judged.extra, judged.missed});
         begins[p].insert(begins[p].end(), judged.begin_ms.begin(), judged.begin_ms.end());
         ends[p].insert(ends[p].end(), judged.end_ms.begin(), judged.end_ms.end());
         latencies[p].insert(latencies[p].end(), judged.latency_ms.begin(), judged.latency_ms.end());

@@ -70,6 +70,7 @@ struct SweepPoint {
   std::vector<std::size_t> at;                      ///< per axis, the index of its value; one at
                                                     ///< a time: empty
   int correct = 0, extra = 0, missed = 0;           ///< events
+  std::vector<int> of_each;                         ///< the same of each episode
   double f1 = 1;                                    ///< of these; 1 if there is nothing
   double begin_ms = 0, end_ms = 0, latency_ms = 0;  ///< medians; NaN of nothing
 };
