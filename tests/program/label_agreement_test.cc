@@ -101,6 +101,13 @@ TEST_F(Agreement, KappaIsOfFrames) {
   const Said text = Prehend({"score", ben, "--truth", anna});
   EXPECT_NE(text.out.find("kappa of frames: hold 0.60, rest 1.00, all "), std::string::npos)
       << text.out;
+  // Nobody says that there was nothing before 0.
+  const auto early = Json({"score", File("e.csv", "-2,3,hold,right\n6.9,7,rest,right\n"), "--truth",
+                           File("f.csv", "-3,2,hold,right\n6.9,7,rest,right\n")});
+  for (const auto& event : early["events"]) {
+    if (event["event"] == "rest") continue;
+    EXPECT_NEAR(event["kappa"], 0.6, 1e-9) << event;
+  }
   const Said hardly = Prehend({"score", File("c.csv", "5,6,hold,right\n6,6.01,rest,right\n"),
                                "--truth", File("d.csv", "0,0.01,hold,right\n6,6.01,rest,right\n")});
   EXPECT_NE(hardly.out.find("kappa of frames: hold 0.00, rest 1.00"), std::string::npos)

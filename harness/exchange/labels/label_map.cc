@@ -521,10 +521,19 @@ std::size_t LabelReading::Cut(std::size_t take, double end_s) const {
       }));
 }
 
-double LabelReading::EndOf(std::size_t take) const {
-  double end_s = 0;
-  for (const LabelledEvent& label : events_[take]) end_s = std::max(end_s, label.end_s);
-  return end_s;
+std::pair<double, double> LabelReading::SpanOf(std::size_t take) const {
+  std::pair<double, double> span;
+  for (const LabelledEvent& label : events_[take])
+    span = {std::min(span.first, label.begin_s), std::max(span.second, label.end_s)};
+  return span;
+}
+
+void LabelReading::Move(std::size_t take, double by_s) {
+  for (LabelledEvent& label : events_[take]) {
+    label.begin_s += by_s;
+    label.end_s += by_s;
+    if (label.decided_s) *label.decided_s += by_s;
+  }
 }
 
 }  // namespace prehend::exchange

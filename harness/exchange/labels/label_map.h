@@ -143,8 +143,10 @@ class LabelReading {
                            bool moments) const;
   /// How many labels of the take are cut at an end of a recording of this length.
   std::size_t Cut(std::size_t take, double end_s) const;
-  /// Where the last label of the take ends, in seconds.
-  double EndOf(std::size_t take) const;
+  /// From 0, or where its first label begins before, to where the last label of the take ends, s.
+  std::pair<double, double> SpanOf(std::size_t take) const;
+  /// All labels of the take come so much later.
+  void Move(std::size_t take, double by_s);
   /// Of those of a moment how many lie in what is found, by event, give or take `before` ticks from
   /// its begin. What contains one, and no true event is there, is taken out of `found`.
   std::map<std::string, Moments> TakeMoments(std::size_t take, const grammar::Timeline& truth,

@@ -389,13 +389,17 @@ Result<LabelScores> ScoreLabelFiles(const LabelFilesRequest& request, std::strin
   }
   PREHEND_TRY(auto files, ReadBoth(request, map ? map->csv : exchange::CsvReading{}));
   if (events.empty()) map = MapOf(files, events);
-  PREHEND_TRY(const auto reading,
+  PREHEND_TRY(auto reading,
               exchange::LabelReading::Of(std::move(files), map ? &*map : nullptr, events));
   warnings += exchange::WarningsOf(reading);
   std::size_t merged = reading.counted().labels;
   std::vector<EpisodeToScore> all;
   for (std::size_t i = 0; i < count; ++i) {
-    const double end_s = std::max(reading.EndOf(i), reading.EndOf(count + i));
+    const auto [begin_s, one_end_s] = reading.SpanOf(i);
+    const auto [other_begin_s, other_end_s] = reading.SpanOf(count + i);
+    const double before_s = -std::min(begin_s, other_begin_s),
+                 end_s = before_s + std::max(one_end_s, other_end_s);
+    for (const std::size_t take : {i, count + i}) reading.Move(take, before_s);
     const auto end =
         std::max<grammar::Tick>(1, std::llround(end_s * static_cast<double>(kTicksPerSecond)));
     EpisodeToScore pair{.scenario = request.files[i],
