@@ -78,6 +78,18 @@ TEST(MissingFacts, ForcesAreNotMadeOfMotion) {
             std::string::npos)
       << said.err;
   EXPECT_EQ(said.err.find("make these facts of motion"), std::string::npos) << said.err;
+  // Of an episode file the grammar is called as it was.
+  WriteFile(folder / "g.grammar",
+            "grammar g\nuse contact from motion\n"
+            "event press(a: Thing, b: Thing) while force(a, b) > 1 N\n");
+  Prehend({"import", (folder / "poses.jsonl").string(), "--grammar",
+           (folder / "g.grammar").string(), "-o", (folder / "kept.episodes").string()});
+  const Said kept = Prehend({"episode", "resegment", (folder / "kept.episodes").string()});
+  EXPECT_NE(kept.err.find("\n" + (folder / "g.grammar").string() +
+                          ":3:7: warning: this recording "
+                          "has no forces, so 'press' is never recognised\n"),
+            std::string::npos)
+      << kept.err;
 }
 
 // Poses without a single orientation: nothing is ever tipped.

@@ -148,7 +148,10 @@ grammar::CompileResult EpisodeLoader::Compile(bool is_own, const std::string& na
   const std::string found = is_own ? tasks_.GrammarWithin(name_or_path) : name_or_path;
   const GrammarKey key{is_own, found, overrides};
   if (const auto known = programs_.find(key); known != programs_.end()) return {known->second, {}};
-  grammar::CompileResult compiled = LoadGrammar(is_own ? tasks_.root() : root_, found, overrides);
+  const auto original = [&](const std::string& path) { return tasks_.Original(path); };
+  grammar::CompileResult compiled =
+      is_own ? LoadGrammar(tasks_.root(), found, overrides, nullptr, {}, original)
+             : LoadGrammar(root_, found, overrides);
   if (compiled.program) programs_.emplace(key, compiled.program);
   return compiled;
 }
@@ -210,8 +213,6 @@ Result<LoadedRun> EpisodeLoader::Load(const EpisodeFile& file, const EpisodeRow&
   loaded->program = std::move(compiled.program);
   loaded->scenario.grammar = GrammarName(*loaded->program);
   loaded->warnings = Warnings(*loaded->program, MakeEntityTable(loaded->scenario));
-  for (grammar::Diagnostic& warning : loaded->warnings)
-    warning.file = tasks_.Original(warning.file);
   return loaded;
 }
 

@@ -265,7 +265,9 @@ void WarnOfUnknownNames(const std::vector<grammar::NameInSource>& names,
 
 grammar::CompileResult LoadGrammar(const std::string& root, const std::string& name_or_path,
                                    const grammar::Overrides& overrides,
-                                   std::vector<std::string>* files, const GrammarTexts& instead) {
+                                   std::vector<std::string>* files, const GrammarTexts& instead,
+                                   const PathNames& shown) {
+  const auto named = [&](const std::string& path) { return shown ? shown(path) : path; };
   const auto read = [&](const std::string& path) -> Result<std::string> {
     const auto text = instead.find(path);
     return text == instead.end() ? ReadTextFile(path) : text->second;
@@ -310,7 +312,7 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
     for (const std::string& candidate : candidates) {
       if (files) files->push_back(candidate);
       Result<std::string> found = read(candidate);
-      if (found) return grammar::GrammarText{candidate, std::move(*found)};
+      if (found) return grammar::GrammarText{named(candidate), std::move(*found)};
       std::error_code error;
       if (fs::symlink_status(candidate, error).type() == fs::file_type::not_found) continue;
       // It is there: neither is another one meant, nor is there none.
@@ -320,7 +322,7 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
     return std::nullopt;
   };
   grammar::CompileResult compiled =
-      grammar::Compile({file, std::move(*text)}, include, overrides, known);
+      grammar::Compile({named(file), std::move(*text)}, include, overrides, known);
   if (unreadable.empty()) return compiled;
   return {nullptr, std::move(unreadable)};
 }

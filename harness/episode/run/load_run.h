@@ -30,6 +30,8 @@ std::string GrammarFile(const std::string& root, const std::string& name_or_path
 
 /// What is read instead of files: path -> text.
 using GrammarTexts = std::map<std::string, std::string>;
+/// How a file is called in diagnostics.
+using PathNames = std::function<std::string(const std::string&)>;
 
 /// Several are joined with '+': "pick_and_place+furniture+./kitchen.grammar" is compiled as one
 /// grammar that uses all of them, in this order, and is called `pick_and_place_and_furniture_..`.
@@ -39,7 +41,7 @@ using GrammarTexts = std::map<std::string, std::string>;
 grammar::CompileResult LoadGrammar(const std::string& root, const std::string& name_or_path,
                                    const grammar::Overrides& overrides = {},
                                    std::vector<std::string>* files = nullptr,
-                                   const GrammarTexts& instead = {});
+                                   const GrammarTexts& instead = {}, const PathNames& shown = {});
 
 /// The same of a recording: what it names unless another one is `asked` for. A name that no grammar
 /// has is an error where the recording, or the map that made it, says it.
