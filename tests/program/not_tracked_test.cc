@@ -99,6 +99,13 @@ TEST_F(NotTracked, WhatALongGapLeavesUnknownEndsAndNeitherDoesItsOppositeHold) {
       "warning: 'cup' is not tracked in 1 gap: 0.100 s are bridged, in 0.300 s it is unknown\n"
       "assumed: in near(hand, cup), 0.0000..0.9000 s, 'cup' is not seen for 0.100 s\n"
       "assumed: in moving(cup), 0.0200..0.9000 s, 'cup' is not seen for 0.100 s\n");
+  // No frame is in the first 0.3 s of that: they are bridged by nobody.
+  std::string late = Recording(40, 60);
+  late.erase(late.find("{\"tick\": 800,"),
+             late.find("{\"tick\": 1100,") - late.find("{\"tick\": 800,"));
+  EXPECT_EQ(
+      Segment(late).err,
+      "warning: 'cup' is not tracked in 1 gap: 0.000 s are bridged, in 0.100 s it is unknown\n");
   const Said longer = Segment(Recording(40, 60, "\"bridge_s\": 0.5, "));
   EXPECT_EQ(longer.out, Segment(Recording(0, 0)).out);
   const Said never = Segment(Recording(40, 44, "\"bridge_s\": 0, "));

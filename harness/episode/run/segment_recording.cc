@@ -71,15 +71,18 @@ std::string_view RemedyFor(std::string_view fact, bool uses_motion) {
 /// By entity, the times from where it was seen last, by `bridge_s`, to where it is found again.
 using Losses = std::vector<std::vector<grammar::Interval>>;
 
-void AddLosses(const EpisodeFrame& frame, const Recording& recording, Losses& losses) {
+/// `before`: the frame before. What it says holds up to this one; within `bridge_s` it is bridged.
+void AddLosses(const EpisodeFrame& frame, std::optional<grammar::Tick> before,
+               const Recording& recording, Losses& losses) {
   const auto bridge = static_cast<grammar::Tick>(
       recording.header.bridge_s *
       static_cast<double>(recording.header.entity_table.ticks_per_second));
+  const bool bridged = before && frame.tick - *before <= bridge;
   for (std::size_t i = 0; i < losses.size(); ++i) {
     const bool was_lost = !losses[i].empty() && losses[i].back().end == recording.end_tick;
     if (was_lost && grammar::IsTracked(frame.entities[i])) losses[i].back().end = frame.tick;
     if (!was_lost && !grammar::IsTracked(frame.entities[i]))
-      losses[i].push_back({frame.tick - bridge, recording.end_tick});
+      losses[i].push_back({frame.tick - (bridged ? bridge : 0), recording.end_tick});
   }
 }
 
@@ -170,9 +173,9 @@ Result<SegmentedRecording> SegmentRecording(Recording& recording,
   std::optional<grammar::Tick> before;
   const auto look = [&](EpisodeFrame& frame) {
     if (before) steps.push_back(frame.tick - *before);
+    AddLosses(frame, before, recording, losses);
     before = frame.tick;
     facts.Add(frame.View(), entities);
-    AddLosses(frame, recording, losses);
   };
   PREHEND_TRY(segmented.timeline, SegmentFrames(recording, program, file, look));
   segmented.frame_ticks = steps.empty() ? 1 : Median(std::move(steps));
