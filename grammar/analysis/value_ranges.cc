@@ -3,6 +3,7 @@
 #include "grammar/analysis/value_ranges.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
@@ -76,8 +77,13 @@ Verdict Judge(Op op, const Range& left, const Range& right) {
 
 std::string RangeText(const Range& range, const Dimension& dimension) {
   const auto text = [&](double value) {
-    std::string quantity =
-        QuantityText({value * (dimension.angle == 1 ? 180 / std::numbers::pi : 1), dimension});
+    constexpr int kDigits = 6;  // what was computed has no more that people want to see
+    char digits[32];
+    value *= dimension.angle == 1 ? 180 / std::numbers::pi : 1;
+    const auto written =
+        std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, kDigits);
+    std::from_chars(digits, written.ptr, value);
+    std::string quantity = QuantityText({value, dimension});
     if (dimension.angle == 1)
       quantity.replace(quantity.find("rad"), 3, "deg");  // as people write angles
     return quantity;

@@ -64,7 +64,7 @@ std::optional<int> Lowering::RoleArgument(const Expr& expr, std::string_view wan
                  Quoted(expr.text) + " is " + WithArticle(class_name),
              wanted_class == "Jointed"
                  ? "what hangs on a slider or a hinge is Jointed: " + expr.text + ": Jointed"
-                 : "");
+                 : DidYouMean(class_name, {std::string(wanted_class)}));
     return std::nullopt;
   }
   return role;

@@ -119,8 +119,10 @@ class LawLowering {
     }
     const int index = static_cast<int>(role - law_.roles.begin());
     if (!ClassesMeet(role->class_name, wanted)) {
-      Complain(arg.place, Quoted(expr.text) + " takes " + WithArticle(wanted) + " here, but " +
-                              Quoted(arg.text) + " is " + WithArticle(role->class_name));
+      Complain(arg.place,
+               Quoted(expr.text) + " takes " + WithArticle(wanted) + " here, but " +
+                   Quoted(arg.text) + " is " + WithArticle(role->class_name),
+               DidYouMean(role->class_name, {wanted}));
       return false;
     }
     const bool twice = std::ranges::any_of(

@@ -86,9 +86,13 @@ bool ReportExpectedNumber(const YamlNode& node, DiagnosticList& errors, const st
 bool HasSize(const YamlNode& node, DiagnosticList& errors, std::size_t least, std::size_t most) {
   const std::size_t size = node.children.size();
   if (size >= least && size <= most) return true;
-  const std::string wanted = least == most  ? fmt::format("{} items", least)
-                             : size < least ? fmt::format("at least {}", least)
-                                            : fmt::format("at most {}", most);
+  const auto of = [&](std::size_t count) {
+    const char* noun = node.kind == YamlNode::Kind::kMapping ? "key" : "item";
+    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+  };
+  const std::string wanted = least == most  ? of(least)
+                             : size < least ? "at least " + of(least)
+                                            : "at most " + of(most);
   errors.Add(node.where, fmt::format("{}expected {}, found {}", LabelOf(node), wanted, size));
   return false;
 }

@@ -23,8 +23,12 @@ class MapReader {
 
   Diagnostics Read() {
     const YamlNode& root = map_.document.root;
-    if (root.kind != YamlNode::Kind::kMapping) {
-      errors_.Add(root.where, "expected a map of labels, found " + Describe(root), kExample);
+    const bool is_of_poses = root.Find("import") != nullptr;
+    if (root.kind != YamlNode::Kind::kMapping || is_of_poses) {
+      errors_.Add(
+          root.where,
+          "expected a map of labels, found " + (is_of_poses ? "one of poses" : Describe(root)),
+          kExample);
       return errors_.Sorted();
     }
     for (const YamlNode& node : root.children) {

@@ -387,9 +387,13 @@ Result<MapFile> ReadImportMap(Result<YamlDocument> document, PoseFormat format,
   if (!document) return tl::unexpected(std::move(document.error()));
   MapFile file{.document = std::move(*document), .map = {}};
   DiagnosticList errors(file.document);
-  for (YamlNode& node : file.document.root.children)
+  YamlNode& root = file.document.root;
+  const bool is_of_labels = root.Find("labels") && !root.Find("import") && !root.Find("axes");
+  if (is_of_labels)
+    errors.Add(root.where, "expected a map of poses, found one of labels", "import: 1");
+  for (YamlNode& node : root.children)
     if (node.key == "labels") std::ranges::for_each(node.children, JoinCalls);
-  if (MapFormat().Read(file.document.root, errors, file.map)) {
+  if (!is_of_labels && MapFormat().Read(root, errors, file.map)) {
     for (Named<MappedEntity>& entity : file.map.entities) {
       MappedEntity& e = entity.value;
       if (e.pose || e.position) e.from = e.pose ? e.pose : e.position;
@@ -400,8 +404,8 @@ Result<MapFile> ReadImportMap(Result<YamlDocument> document, PoseFormat format,
                    : e.fixed ? Eigen::Vector3d(1.2, 0.8, 0.04)
                              : Eigen::Vector3d(0.1, 0.1, 0.1);
     }
-    if (complete) complete(file.document.root.where, file.map, errors);
-    CheckMap(file.map, format, file.document.root, errors);
+    if (complete) complete(root.where, file.map, errors);
+    CheckMap(file.map, format, root, errors);
   }
   if (!errors.empty()) return tl::unexpected(errors.Sorted());
   return file;

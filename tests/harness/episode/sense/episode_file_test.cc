@@ -192,7 +192,7 @@ TEST(EpisodeFile, BadPartsHaveTheirPlace) {
     const std::string all = scenario::Brief(ErrorsOf(ReadText(CupOf(parts))));
     return all.substr(std::min(all.find(".jsonl:"), all.size() - 7) + 7);
   };
-  EXPECT_EQ(complaint("[]"), "1:112: parts: expected at least 1, found 0\n");
+  EXPECT_EQ(complaint("[]"), "1:112: parts: expected at least 1 item, found 0\n");
   EXPECT_EQ(complaint(R"([{"sphere": {"radius_m": -1}}])"),
             "1:137: radius_m: expected a number from 0 to 10000, found '-1'\n");
   EXPECT_EQ(complaint("[{}]"),
@@ -202,13 +202,13 @@ TEST(EpisodeFile, BadPartsHaveTheirPlace) {
   EXPECT_EQ(complaint(R"([{"cylinder": {"radius_m": 1}}])"),
             "1:114: a cylinder needs the key 'length_m'\n");
   EXPECT_EQ(complaint(R"([{"hull": {"points_m": [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}}])"),
-            "1:135: points_m: expected at least 4, found 3\n");
+            "1:135: points_m: expected at least 4 items, found 3\n");
   EXPECT_EQ(
       complaint(R"([{"sphere": {"radius_m": 1}, "quat_wxyz": [1, 1, 0, 0]}])"),
       "1:154: quat_wxyz: expected a unit quaternion [w, x, y, z], found one of length 1.414\n");
   std::string many = R"({"sphere": {"radius_m": 1}})";
   for (int i = 0; i < 256; ++i) many += R"(, {"sphere": {"radius_m": 1}})";
-  EXPECT_EQ(complaint("[" + many + "]"), "1:112: parts: expected at most 256, found 257\n");
+  EXPECT_EQ(complaint("[" + many + "]"), "1:112: parts: expected at most 256 items, found 257\n");
 }
 
 TEST(EpisodeFile, WhatIsNoJsonHasItsRealCause) {

@@ -118,7 +118,7 @@ TEST(AbstractEntities, AHullIsReadWithThePlaceOfEachMistake) {
   EXPECT_NEAR(read->scene.bodies[2].X_WB.p_m.z(), 0.75, 1e-12);
   const std::string end = "}, mass_kg: 0.1, at_m: [0.3, 0.3, 1]";
   EXPECT_EQ(Complaint("hull: {points_m: [[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0]]" + end),
-            "6:25: points_m: expected at least 4, found 3\n");
+            "6:25: points_m: expected at least 4 items, found 3\n");
   EXPECT_EQ(
       Complaint("hull: {points_m: [[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0.1, 0.1, 0]]" + end),
       "6:25: points_m: the points lie in a plane, or within 1 mm of one | a hull is a solid: add "

@@ -54,7 +54,7 @@ TEST(ReadClaims, ACommaInBracketsNeedsQuotes) {
 TEST(ReadClaims, HaveLimits) {
   std::string many = "expects:\n";
   for (int i = 0; i < 65; ++i) many += "  - no sliding\n";
-  EXPECT_EQ(Brief(ErrorsOf(ReadWith(many))), "4:3: expects: expected at most 64, found 65\n");
+  EXPECT_EQ(Brief(ErrorsOf(ReadWith(many))), "4:3: expects: expected at most 64 items, found 65\n");
 }
 
 }  // namespace

@@ -170,7 +170,7 @@ TEST(ReadScenario, LimitsOnTheWhole) {
   std::string many;
   for (std::size_t i = 0; i <= kMaxBeats; ++i) many += "  - right_hand: {wait_s: 0.01}\n";
   EXPECT_EQ(ErrorsAbout(ProbeWith("pictures:\n", many + "pictures:\n")),
-            "11:3: script: expected at most 1000, found 1003\n");
+            "11:3: script: expected at most 1000 items, found 1003\n");
 }
 
 TEST(ReadScenario, TenThousandEntitiesAreReadAndCheckedQuickly) {
@@ -183,7 +183,7 @@ TEST(ReadScenario, TenThousandEntitiesAreReadAndCheckedQuickly) {
   EXPECT_EQ(Read(ProbeWith("actors:\n", entities + "actors:\n")).scene.bodies.size(), kMaxEntities);
   entities += "  one_too_many: {fixed: true, sphere: {radius_m: 0.1}, at_m: [0, 0, 9]}\n";
   EXPECT_EQ(ErrorsAbout(ProbeWith("actors:\n", entities + "actors:\n")),
-            "6:3: entities: expected at most 10000, found 10001\n");
+            "6:3: entities: expected at most 10000 keys, found 10001\n");
 }
 
 TEST(MakeEntityTable, BodiesFirstThenHands) {

@@ -83,7 +83,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadOrder{"both",
                  "{right_hand: {wait_s: 1, name: a}, left_hand: {wait_s: 1, after: a, with: a}}",
                  "13:73: a wait step cannot have both 'after' and 'with'\n"},
-        BadOrder{"empty", "{right_hand: []}", "13:18: right_hand: expected at least 1, found 0\n"}),
+        BadOrder{"empty", "{right_hand: []}",
+                 "13:18: right_hand: expected at least 1 item, found 0\n"}),
     [](const auto& bad) { return bad.param.name; });
 
 }  // namespace
