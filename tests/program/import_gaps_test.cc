@@ -61,5 +61,18 @@ TEST(ImportGaps, WhatIsHeldNeedsNoSuchFrame) {
   EXPECT_EQ(ReadFile(folder / "take.jsonl").find("null"), std::string::npos);
 }
 
+TEST(ImportGaps, LostInRowsAPauseIsNone) {
+  const auto folder = FreshFolder("lost_in_rows");
+  EXPECT_EQ(Segment(folder, "lost: in_rows\nend_s: 6.1\n").err, "");
+  const std::string recording = ReadFile(folder / "take.jsonl");
+  EXPECT_EQ(recording.find("null"), std::string::npos) << recording;
+  EXPECT_TRUE(recording.ends_with("{\"end_tick\":61000}\n")) << recording;
+  const Said early =
+      ImportCsv(folder, CsvWithAGap(), kCupMap + std::string("lost: in_rows\nend_s: 5\n"));
+  EXPECT_EQ(early.exit_code, 2);
+  EXPECT_NE(early.err.find("error: the last row of the file is at 6 s\n"), std::string::npos)
+      << early.err;
+}
+
 }  // namespace
 }  // namespace prehend::house
