@@ -118,6 +118,7 @@ void ScriptPlayer::Resolver::Follow(const Segment& segment) {
 }
 
 void ScriptPlayer::Resolver::Follow(const std::vector<TimedPose>& poses) {
+  hand_.turns_from = hand_.target.X_WH.q;
   hand_.motion = WaypointTrajectory(hand_.target, poses);
   hand_.target = hand_.motion.At(hand_.motion.duration_s());
 }
@@ -306,7 +307,6 @@ void ScriptPlayer::Resolver::operator()(const FollowJointStep& follow) {
     const Pose motion = MotionAlong(scene_, joint, X_WBase, MinimumJerk(x) * change);
     poses.push_back({.t_s = x * step_.over_s, .X_WH = motion * hand_.target.X_WH, .trigger = {}});
   }
-  hand_.came_along_W = MotionAlong(scene_, joint, X_WBase, change).q * hand_.came_along_W;
   Follow(poses);
 }
 
@@ -354,8 +354,6 @@ void ScriptPlayer::Resolver::operator()(const OrbitStep& orbit) {
                      .X_WH = {centre + offset, (by * X_WH.q).normalized()},
                      .trigger = {}});
   }
-  const Eigen::Quaterniond turned(Eigen::AngleAxisd(orbit.by_rad, Eigen::Vector3d::UnitZ()));
-  hand_.came_along_W = turned * hand_.came_along_W;
   Follow(poses);
 }
 
@@ -394,6 +392,9 @@ std::vector<int> ScriptPlayer::FirstStyles(const Scene& scene, const Script& scr
 }
 
 void ScriptPlayer::Settle(HandState& hand) {
+  if (hand.turns_from)
+    hand.came_along_W = hand.target.X_WH.q * hand.turns_from->conjugate() * hand.came_along_W;
+  hand.turns_from.reset();
   double& height_m = hand.target.X_WH.p_m.z();
   if (hand.placing) height_m = hand.placing->HeightOf(height_m);
   hand.placing.reset();

@@ -102,7 +102,9 @@ class ScriptPlayer {
     int style = 0;
     BodyIndex object = {};  ///< the body last reached for, or none
     Eigen::Vector3d came_along_W =
-        Eigen::Vector3d::Zero();  ///< direction of the last arrival; zero before the first reach
+        Eigen::Vector3d::Zero();  ///< of the last arrival, turned with the hand; zero before it
+    /// What turns it with the present step: the hand along its way-points, from here.
+    std::optional<Eigen::Quaterniond> turns_from = std::nullopt;
     std::optional<Placing> placing = std::nullopt;
     std::optional<Waiting> waiting = std::nullopt;
     std::optional<Pressing> pressing = std::nullopt;

@@ -93,6 +93,31 @@ TEST(ScriptPlayerTest, RetreatGoesBackTheWayItCame) {
   EXPECT_LT((retreated.X_WH.p_m - reached.X_WH.p_m - Eigen::Vector3d(0, 0, 0.2)).norm(), 1e-9);
 }
 
+TEST(ScriptPlayerTest, RetreatTurnsWithTheHand) {
+  const Scene scene = MakeScene({});
+  const ScriptStage reach = One(ReachStep{"object", "wrap", Approach::kSide}, 0.5),
+                    retreat = One(RetreatStep{0.2}, 0.5);
+  const auto way_m = [&](const std::vector<ScriptStage>& turns) {
+    std::vector<ScriptStage> stages = {reach};
+    stages.insert(stages.end(), turns.begin(), turns.end());
+    const Eigen::Vector3d before_m = EndOf(scene, {.stages = stages}).X_WH.p_m;
+    stages.push_back(retreat);
+    return Eigen::Vector3d(EndOf(scene, {.stages = stages}).X_WH.p_m - before_m);
+  };
+  const Eigen::Vector3d back_m = way_m({}), left_m(-back_m.y(), back_m.x(), 0);
+  const ScriptStage turn = One(TurnHandStep{{0, 0, M_PI / 4}}, 0.5);
+  EXPECT_LT((way_m({turn, turn}) - left_m).norm(), 1e-9);
+  EXPECT_LT((way_m({turn, One(OrbitStep{"table", M_PI / 4}, 0.5)}) - left_m).norm(), 1e-9);
+  const Eigen::Quaterniond quarter(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
+  const PosesStep poses{.poses = {{0.5, {{0, 0, 0.1}, quarter}, {}}},
+                        .frames = {{.own_hand = true, .world_axes = true}}};
+  EXPECT_LT((way_m({One(poses, 0.5)}) - left_m).norm(), 1e-9);
+  // It stops at once, when it has not turned.
+  ScriptStage stopped = turn;
+  stopped.steps[0].until = Until{.thing = "object", .gap_m = 1.0};
+  EXPECT_LT((way_m({stopped}) - back_m).norm(), 0.001);
+}
+
 /// What is said of the first stage.
 Texts NotesOf(const Scene& scene, const ScriptStage& stage) {
   const Script script{.stages = {stage}};
