@@ -97,14 +97,15 @@ double HandClearance::LessTo(BodyIndex body, const Pose& X_WH, const Snapshot& n
   return least;
 }
 
-HandClearance::Nearest HandClearance::NearestAlong(const Segment& segment,
-                                                   const Snapshot& now) const {
+HandClearance::Nearest HandClearance::NearestAlong(const Segment& segment, const Snapshot& now,
+                                                   BodyIndex but) const {
   Trajectory trajectory({});
   trajectory.Append(segment);
   Nearest nearest;
   for (int i = 1; i <= kLooks; ++i) {
     const Pose X_WH = trajectory.At(segment.duration_s * i / kLooks).X_WH;
     for (const BodyIndex body : obstacles_) {
+      if (body == but) continue;
       const double distance_m = LessTo(body, X_WH, now, nearest.distance_m);
       if (distance_m < nearest.distance_m) nearest = {distance_m, body};
     }

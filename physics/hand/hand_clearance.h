@@ -33,7 +33,7 @@ class HandClearance {
     double distance_m = kFar_m;
     BodyIndex body = {};
   };
-  Nearest NearestAlong(const Segment& segment, const Snapshot& now) const;
+  Nearest NearestAlong(const Segment& segment, const Snapshot& now, BodyIndex but = kNone) const;
 
  private:
   /// The distance to this body, if it is less than `least`.

@@ -52,16 +52,18 @@ std::set<std::string> SidesThatSqueeze(const Scene& scene, const Snapshot& now, 
   return sides;
 }
 
+/// "" if nothing is in the way, other than a thing that is too wide for the style.
 std::string NoteAboutObstacle(const Scene& scene, const Snapshot& now, const ReachQuery& query,
-                              const ReachPlan& plan) {
+                              const ReachPlan& plan, bool too_wide) {
   const HandModel& model = scene.hand(query.hand).model;
   const GraspStyle& style = model.styles[static_cast<std::size_t>(query.style)];
   const std::string& object = scene.body(query.object).name;
   const auto nearest_at = [&](double trigger) {
     return HandClearance(scene, query.hand, JointTargets(style, trigger))
-        .NearestAlong(plan.segment, now);
+        .NearestAlong(plan.segment, now, too_wide ? query.object : kNone);
   };
   const HandClearance::Nearest worst = nearest_at(query.from.trigger);
+  if (worst.distance_m >= -kNotedTouch_m) return "";
   const std::string& obstacle = scene.body(worst.body).name;
   if (query.from.trigger > 0 && nearest_at(0).distance_m >= -kNotedTouch_m)
     return "it comes with its grip at " + TwoDigits(query.from.trigger) + ", so its fingers push " +
@@ -87,12 +89,14 @@ std::string NoteAboutReach(const Scene& scene, const Snapshot& now, const ReachQ
   if (plan.beside_m > kAtPoint_m)
     add("no grip of " + object + " in style " + style.name + " is at point_m: the nearest is " +
         Millimetres(plan.beside_m) + " beside it");
-  if (plan.width_m > style.opening_m + kNotedWidth_m && query.offset_m.isZero())
+  const bool too_wide = plan.width_m > style.opening_m + kNotedWidth_m && query.offset_m.isZero();
+  if (too_wide)
     add("style " + style.name + " opens " + Millimetres(style.opening_m) + ", and " + object +
         " is " + Millimetres(plan.width_m) + " wide there: the hand will not close around it; " +
         "take it at a narrower part with 'point_m', in another style, or with two hands");
-  else if (!plan.found && plan.clearance_m < -kNotedTouch_m)
-    add(NoteAboutObstacle(scene, now, query, plan));
+  if (plan.found || plan.clearance_m >= -kNotedTouch_m) return notes;
+  const std::string obstacle = NoteAboutObstacle(scene, now, query, plan, too_wide);
+  if (!obstacle.empty()) add(obstacle);
   return notes;
 }
 
@@ -106,7 +110,7 @@ std::string NoteAboutGrip(const Scene& scene, const Snapshot& now, HandIndex han
   if (sides.size() >= 2) return "";
   if (sides.size() == 1)
     return "it has closed and touches " + scene.body(object).name + " with its " + *sides.begin() +
-           " only, which is no grasp: " +
+           " only, which by itself is no grasp: " +
            (closes_to < 1 ? "close it farther ('close_to: 1'), or " : "") +
            "reach for it from another side";
   const HandState& state = now.hand(hand);
@@ -121,7 +125,7 @@ std::string NoteAboutGrip(const Scene& scene, const Snapshot& now, HandIndex han
                                   : Millimetres(std::max(away_m, 0.0));
   return "it has closed and does not hold " + name + ", which is " + how_far +
          " away: is the reach's 'offset_m' too large, has " + name +
-         " moved, or is it too thin for this style?";
+         " moved, or is it too thin or too wide for this style?";
 }
 
 std::string NoteAboutWay(const Scene& scene, const Snapshot& now, HandIndex hand, double off_m) {

@@ -155,6 +155,15 @@ TEST(ScriptPlayerTest, NotesAThingThatIsTooWideForTheStyle) {
   EXPECT_EQ(NotesOf(as_wide, One(reach, 0.5)), Texts{});
   reach.offset_m = {-0.1, 0, 0.1};  // to miss on purpose
   EXPECT_EQ(NotesOf(scene, One(reach, 0.5)), Texts{});
+  // What is in the way besides is said, too.
+  Body roof{.name = "roof", .shapes = {{Box{{1, 1, 0.02}}, {}}}, .fixed = true};
+  roof.X_WB.p_m = {0.2, 0.1, 0.95};
+  scene.bodies.push_back(roof);
+  reach.offset_m.setZero();
+  const Texts said = NotesOf(scene, One(reach, 0.5));
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_TRUE(said[0].starts_with("style wrap opens 85 mm, and object is 140 mm wide")) << said[0];
+  EXPECT_NE(said[0].find(" mm into roof; try 'from: side'"), std::string::npos) << said[0];
 }
 
 TEST(ScriptPlayerTest, AWidthIsThatOfTheShapeNotOfItsTurnedBox) {
@@ -194,7 +203,8 @@ TEST(ScriptPlayerTest, NotesAHandThatClosesBesideItsThing) {
   const ReachStep above{"object", "wrap", Approach::kAbove, {0, 0, 0.15}};
   EXPECT_EQ(NotesOfGrasp(MakeScene({}), above, 0),
             Texts{"it has closed and does not hold object, which is 68 mm away: is the reach's "
-                  "'offset_m' too large, has object moved, or is it too thin for this style?"});
+                  "'offset_m' too large, has object moved, or is it too thin or too wide for this "
+                  "style?"});
 }
 
 // The fingers arrive after the end of a short step.
