@@ -22,12 +22,6 @@ std::size_t IndexOf(const btCollisionObject& body) {
   return static_cast<std::size_t>(body.getWorldArrayIndex());
 }
 
-/// Whether it is a link of a hand. Its points stay as Bullet keeps them: fingers press, so new
-/// points are found all the time.
-bool IsLink(const btCollisionObject& body) {
-  return body.getInternalType() == btCollisionObject::CO_FEATHERSTONE_LINK;
-}
-
 /// The shorter of two changes in the same direction, else zero.
 btVector3 Shared(const btVector3& a, const btVector3& b) {
   if (a.dot(b) <= 0) return {0, 0, 0};
@@ -49,7 +43,7 @@ std::uint64_t Ids(const btBroadphasePair& pair) {
 
 bool CarriedNormals::Turned(const btCollisionObject& body) const {
   const std::size_t i = IndexOf(body);
-  return !IsLink(body) && i < before_.size() && before_[i].known &&
+  return i < before_.size() && before_[i].known &&
          !(before_[i].R_WB == body.getWorldTransform().getBasis());
 }
 

@@ -19,8 +19,8 @@ namespace prehend::physics {
 // point is found anew. A box would therefore lie still on a tilting board, held by normals that
 // point up. Only for physics/bullet. Tested by tests/physics/world/tipping_test.cc
 
-/// Rotates kept normals with their bodies, as far as both rotate together. A contact with a body
-/// that does not rotate, or with a hand, keeps its normal to the last bit.
+/// Rotates kept normals with their bodies, links of hands among them, as far as both rotate
+/// together. A contact with a body that does not rotate keeps its normal to the last bit.
 class CarriedNormals {
  public:
   /// Call after the narrow phase of a tick, once for each manifold with a body that may have moved.

@@ -229,6 +229,31 @@ TEST(Holding, AHandTakesAndLetsGoAlikeInShorterTicks) {
   }
 }
 
+/// How far a can or a box moves, metres, after it was turned half round and put down and the hand
+/// has let go of it and retreated.
+double MovesAfterATurn_m(const Shape& shape, Approach approach, const Eigen::Vector3d& by_deg) {
+  Script script = MakeScript({.style = "wrap", .approach = approach});
+  script.stages[3].steps[0].action = TurnHandStep{by_deg * kRadPerDeg};
+  Simulation simulation(MakeScene(Tabletop{.shape = shape, .mass_kg = 0.35}), script);
+  std::optional<Eigen::Vector3d> put_down_m;
+  while (simulation.Step()) {
+    const HandState& hand = simulation.snapshot().hands[0];
+    if (simulation.snapshot().tick > 3 * 480 && !put_down_m && hand.trigger < 1)
+      put_down_m = simulation.snapshot().bodies[kObject].X_WB.p_m;
+  }
+  return (simulation.snapshot().bodies[kObject].X_WB.p_m - *put_down_m).norm();
+}
+
+// Contacts that held at the grasp would push along directions of that time.
+TEST(Holding, WhatWasTurnedStandsWhenTheHandLetsGo) {
+  const Shape can = Cylinder{0.033, 0.12}, box = Box{{0.06, 0.06, 0.12}};
+  for (const Approach approach : {Approach::kAbove, Approach::kSide})
+    for (const double yaw_deg : {-180, 90, 150})
+      for (const Shape& shape : {can, box})
+        EXPECT_LT(MovesAfterATurn_m(shape, approach, {0, 0, yaw_deg}), 0.001)
+            << "shape " << shape.index() << ", by " << yaw_deg << " degrees";
+}
+
 /// Tilt of a carton, degrees, when it is put down after the hand has turned it by 6 degrees.
 double TiltAtTheLanding(std::optional<bool> keep_upright) {
   Script script;
