@@ -111,7 +111,12 @@ void ScriptPlayer::KeepStanding(std::size_t hand, const Snapshot& now) {
   const Pose& X_WB = now.body(state.object).X_WB;
   const double rise_m = WorldBounds(body, X_WB).min().z() - stood.low_m;
   const Eigen::Vector3d up_W = X_WB.q * stood.up_B;
-  if (HandsOn(state.object, now) != 1 || !Touches(HandIndex(hand), state.object, now) ||
+  // All that touch it move with it, so several take back as one would.
+  int keep = 0;
+  for (std::size_t h = 0; h < hands_.size(); ++h)
+    keep += hands_[h].object == state.object && hands_[h].took && hands_[h].closes &&
+            Rests(hands_[h]) && Touches(HandIndex(h), state.object, now);
+  if (keep != HandsOn(state.object, now) || !Touches(HandIndex(hand), state.object, now) ||
       rise_m > kMostRise_m || up_W.z() < kCosMostLean)
     return;
   const double dt_s = 1.0 / scene_.world.rate_hz;

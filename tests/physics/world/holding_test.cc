@@ -79,6 +79,39 @@ TEST(Holding, WhatIsHeldOnATableIsNotLifted) {
   }
 }
 
+TEST(Holding, WhatTwoHandsCloseOnStays) {
+  for (const Shape& shape : {Shape(Box{{0.06, 0.4, 0.12}}), Shape(Box{{0.05, 0.5, 0.08}})}) {
+    Scene scene = MakeScene(Tabletop{.shape = shape, .mass_kg = 0.8, .at_m = {0.1, 0}});
+    scene.hands[0].X_WH.p_m = {-0.2, -0.3, 1.05};
+    scene.hands.push_back({"left_hand", LibraryHand("human_left"), {{-0.2, 0.3, 1.05}}});
+    const auto both = [](const auto& action_of, double over_s) {
+      return ScriptStage{
+          {{HandIndex(0), action_of(-1), over_s}, {HandIndex(1), action_of(1), over_s}}};
+    };
+    const double half_m = std::get<Box>(shape).size_m.z() / 2;
+    Simulation simulation(
+        scene, {.stages = {both(
+                               [](double side) {
+                                 return StepAction(
+                                     ReachStep{.object = "object",
+                                               .approach = Approach::kAbove,
+                                               .point_m = Eigen::Vector3d(0, 0.12 * side, 0)});
+                               },
+                               0.8),
+                           both([](double) { return StepAction(TriggerStep{1}); }, 0.6),
+                           both([](double) { return StepAction(WaitStep{}); }, 2)}});
+    double rise_m = 0, tilt_deg = 0;
+    while (simulation.Step()) {
+      const Pose& X_WB = simulation.snapshot().bodies[kObject].X_WB;
+      rise_m = std::max(rise_m, X_WB.p_m.z() - kTop_m - half_m);
+      tilt_deg = std::max(
+          tilt_deg, std::acos(std::min((X_WB.q * Eigen::Vector3d::UnitZ()).z(), 1.0)) / kRadPerDeg);
+    }
+    EXPECT_LT(rise_m, 0.001);
+    EXPECT_LT(tilt_deg, 2);
+  }
+}
+
 /// How far the lowest corner of the object is above the table in the first of the ticks (8 ms) with
 /// which their contact ends; -1: never.
 double GapAtTheEndOfContact_m(const Tabletop& tabletop, const Eigen::Vector3d& way_m) {
