@@ -16,6 +16,7 @@
 #include "harness/exchange/doubts/plausibility.h"
 #include "harness/exchange/doubts/rest_poses.h"
 #include "harness/exchange/import/track.h"
+#include "harness/exchange/logs/log_series.h"
 
 namespace prehend::exchange {
 namespace {

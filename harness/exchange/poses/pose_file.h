@@ -102,9 +102,6 @@ class PoseLines {
   std::optional<double> row_s_;
 };
 
-/// Topics of poses, and coordinate frames of a tree of transforms, each a body.
-Result<PoseFile> ReadMcapPoses(const std::string& path, const MapFile& map);
-
 /// JSON that is no recording of our own: the file's name and its first line say so.
 bool IsJsonOfPoses(const std::string& poses_path);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/exchange/poses/log_series.h"
+#include "harness/exchange/logs/log_series.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,6 @@
 
 #include "harness/base/base/median.h"
 #include "harness/base/base/text_file.h"
-#include "harness/exchange/poses/pose_file.h"
 
 namespace prehend::exchange {
 namespace {

@@ -14,9 +14,8 @@
 #include "grammar/base/diagnostic.h"
 #include "harness/base/base/input_files.h"
 #include "harness/base/base/text_file.h"
+#include "harness/exchange/logs/log_series.h"
 #include "harness/exchange/messages/log_file.h"
-#include "harness/exchange/poses/log_series.h"
-#include "harness/exchange/poses/pose_file.h"
 
 namespace prehend::exchange {
 

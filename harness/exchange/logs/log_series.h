@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "harness/exchange/messages/pose_fields.h"
-#include "harness/exchange/poses/import_map.h"
+#include "harness/exchange/poses/pose_file.h"
 
 namespace prehend::exchange {
 
@@ -139,5 +139,8 @@ class LogSeries {
   std::uint64_t poses_ = 0, messages_ = 0;
   std::size_t seen_ = 0;
 };
+
+/// Topics of poses, and coordinate frames of a tree of transforms, each a body.
+Result<PoseFile> ReadMcapPoses(const std::string& path, const MapFile& map);
 
 }  // namespace prehend::exchange
