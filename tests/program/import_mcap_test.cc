@@ -355,6 +355,38 @@ std::string Chain(const std::vector<std::string>& frames) {
   return writer.Bytes();
 }
 
+TEST_F(ImportMcap, ABodyTwiceInAMessageOfTfHasTheLastPose) {
+  const auto twice = [](double off_m, double later_s, const std::string& topic = "/tf") {
+    McapWriter writer;
+    const auto tf = writer.Channel(topic, "cdr", "tf2_msgs/msg/TFMessage");
+    for (int i = 0; i <= 300; ++i) {
+      Cdr message;
+      message.U32(3);
+      Row first = CupAt(i / 60.0 - later_s);
+      first.x += off_m;
+      const auto before_ns = static_cast<std::uint64_t>(later_s * 1e9);
+      message.Header(TimeOf(i) - before_ns, "world").Text("mug").Pose(Place(first));
+      message.Header(TimeOf(i), "world").Text("mug").Pose(Place(CupAt(i / 60.0)));
+      message.Header(TimeOf(i), "world").Text("glove").Pose(Place(HandAt(i / 60.0)));
+      writer.Message(tf, TimeOf(i), message.Bytes());
+    }
+    return writer.Bytes();
+  };
+  const std::string wanted = EventsOf(Transforms());
+  EXPECT_EQ(EventsOf(twice(0.001, 0)), wanted);
+  EXPECT_NE(Import(twice(0.001, 0))
+                .err.find("warning: 'mug' is twice in 301 messages: the last pose counts\n"),
+            std::string::npos);
+  const Said far = Import(twice(0.2, 0));
+  EXPECT_EQ(far.exit_code, 2);
+  EXPECT_NE(far.err.find("'mug' is in it twice, 0.20 m apart"), std::string::npos) << far.err;
+  // At another time it is another pose.
+  const Said later = Import(twice(0, 0.5 / 60));
+  EXPECT_EQ(later.exit_code, 0) << later.err;
+  EXPECT_EQ(later.err.find("twice"), std::string::npos) << later.err;
+  EXPECT_NE(later.out.find("602   120."), std::string::npos) << later.out;
+}
+
 TEST_F(ImportMcap, FramesInARingAndTooManyFramesAreNamed) {
   std::vector<std::string> deep = {"glove", "mug"};
   for (int i = 0; i < 250; ++i) deep.push_back("f" + std::to_string(i));

@@ -241,22 +241,8 @@ std::string LogSeries::TakeAsked(const LogMessage& message, const MessagePose& p
     const auto found = body.links.find(pose.field);
     if (found == body.links.end() || body.address.keys != pose.keys) continue;
     topic.lacks_times = topic.lacks_times || !pose.stamp_ns;
-    FrameLink& link = found->second;
-    const std::size_t before = link.poses.size();
-    std::string why = TakePose(message, pose, body.from, link);
+    std::string why = TakePose(message, pose, body.from, found->second);
     if (!why.empty()) return why;
-    if (link.poses.size() == before) continue;
-    const bool again = body.last_message == messages_ && before > 0;
-    body.last_message = messages_;
-    if (!again) continue;
-    // Some drivers send two frames in a message.
-    const TimedPose last = link.poses.back();
-    link.poses.pop_back();
-    const double apart_m = (link.poses.back().p - last.p).norm() * map_.MetresPerUnit();
-    if (apart_m > kMostApart_m)
-      return fmt::format("'{}' is in it twice, {:.2f} m apart", body.from, apart_m);
-    link.poses.back() = last;
-    ++body.repeats;
   }
   return "";
 }
@@ -313,7 +299,18 @@ std::string LogSeries::TakePose(const LogMessage& message, const MessagePose& po
     q = Eigen::Quaterniond(v[3], v[0], v[1], v[2]);
     if (order_ == QuaternionOrder::kWxyz) q = Eigen::Quaterniond(v[0], v[1], v[2], v[3]);
   }
-  link.poses.push_back({.ns = ns, .p = pose.p, .q = q.normalized()});
+  const TimedPose at{.ns = ns, .p = pose.p, .q = q.normalized()};
+  const bool again = link.last_message == messages_ && (fixed || link.poses.back().ns == ns);
+  link.last_message = messages_;
+  if (again) {  // some drivers send two frames in a message
+    const double apart_m = (link.poses.back().p - at.p).norm() * map_.MetresPerUnit();
+    if (apart_m > kMostApart_m)
+      return fmt::format("'{}' is in it twice, {:.2f} m apart", name, apart_m);
+    link.poses.back() = at;
+    ++link.repeats;
+    return "";
+  }
+  link.poses.push_back(at);
   ++poses_;
   return "";
 }
@@ -321,13 +318,13 @@ std::string LogSeries::TakePose(const LogMessage& message, const MessagePose& po
 std::optional<std::int64_t> FrameLink::Sort() {
   std::ranges::stable_sort(poses, {}, &TimedPose::ns);
   std::optional<std::int64_t> contradiction;
-  const auto repeats = [&](const TimedPose& a, const TimedPose& b) {
+  const auto is_again = [&](const TimedPose& a, const TimedPose& b) {
     if (a.ns != b.ns) return false;
     if (!fixed && ((a.p - b.p).norm() > 1e-6 || a.q.angularDistance(b.q) > 1e-4))
       contradiction = contradiction ? std::min(*contradiction, a.ns) : a.ns;
     return true;
   };
-  poses.erase(std::unique(poses.begin(), poses.end(), repeats), poses.end());
+  poses.erase(std::unique(poses.begin(), poses.end(), is_again), poses.end());
   return contradiction;
 }
 

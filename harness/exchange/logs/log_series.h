@@ -28,8 +28,10 @@ struct TimedPose {
 /// A frame, or the body of a topic, in its parent.
 struct FrameLink {
   std::string parent;
-  bool fixed = false;            ///< known once, and for ever
-  std::vector<TimedPose> poses;  ///< sorted by time, after Sort()
+  bool fixed = false;              ///< known once, and for ever
+  std::vector<TimedPose> poses;    ///< sorted by time, after Sort()
+  std::size_t repeats = 0;         ///< messages in which it comes again: the last counts
+  std::uint64_t last_message = 0;  ///< in which it has a pose
 
   /// Sorts, and drops what is said twice. Returns the time of two poses that differ, if there are.
   std::optional<std::int64_t> Sort();
@@ -65,8 +67,6 @@ struct AskedBody {
   std::string from;
   BodyAddress address;
   std::map<std::size_t, FrameLink> links;  ///< of each field that it can mean
-  std::size_t repeats = 0;                 ///< messages in which it comes again: the last counts
-  std::uint64_t last_message = 0;          ///< in which it has a pose
 };
 
 struct LogTopic {

@@ -176,7 +176,8 @@ class McapPoseReader {
                         "when they were logged",
                         ReadableName(name)));
       std::size_t repeats = 0;
-      for (const AskedBody& body : topic.asked) repeats = std::max(repeats, body.repeats);
+      for (const AskedBody& body : topic.asked)
+        for (const auto& [field, link] : body.links) repeats = std::max(repeats, link.repeats);
       if (repeats > 0)
         note(fmt::format("bodies of '{}' are twice in {}: the last pose counts", ReadableName(name),
                          grammar::CountOf(repeats, "message")));
@@ -187,6 +188,17 @@ class McapPoseReader {
       if (!names.empty())
         note(fmt::format("the file has {}, which the map does not mention", Listed(names)));
     }
+    std::vector<std::string> repeating;
+    std::size_t repeats = 0;
+    for (const auto* series : {&series_->named, &series_->tree.links})
+      for (const auto& [name, link] : *series)
+        if (link.repeats > 0) {
+          repeating.push_back(name);
+          repeats = std::max(repeats, link.repeats);
+        }
+    if (repeats > 0)
+      note(fmt::format("{} {} twice in {}: the last pose counts", Listed(repeating),
+                       repeating.size() == 1 ? "is" : "are", grammar::CountOf(repeats, "message")));
     if (!has_positions) return;
     poses.has_orientations = std::ranges::find(oriented_, true) != oriented_.end();
     for (std::size_t i = 0; i < oriented_.size() && poses.has_orientations; ++i) {
