@@ -103,6 +103,37 @@ TEST_F(ImportUp, BesideAxesItIsThatAxisMadeUpright) {
   EXPECT_EQ(Events(), wanted);
 }
 
+TEST_F(ImportUp, TheWorldIsTurnedTheShortestWayWhicheverAxisOfABodyIsUp) {
+  std::string csv = "t,x,y,z\n";
+  for (int i = 0; i < 100; ++i)
+    csv += std::to_string(i / 50.0) + "," + std::to_string(0.1 + i / 200.0) + ",0.3,0.2\n";
+  const auto places = [&](const std::string& up) {
+    const Said said =
+        ImportCsv(folder_, csv,
+                  kHead + up +
+                      "time_unit: s\nsure: [axes, place]\ncolumns: {time: t, position: "
+                      "[x, 'y', z]}\nentities:\n  cup: {from: poses, size_m: [0.1, 0.1, "
+                      "0.1]}\n");
+    EXPECT_EQ(said.exit_code, 0) << said.err;
+    const std::string take = ReadFile(folder_ / "take.jsonl");
+    std::string all;
+    for (std::size_t at = 0; (at = take.find("\"at_m\":", at)) != std::string::npos; ++at)
+      all += take.substr(at + 7, take.find(']', at) - at - 6) + "\n";
+    return all;
+  };
+  // Up is turned to z about x: what lies along x stays, and y leans.
+  const std::string leaning = places("up: [0, 0.6, 0.8]\n");
+  double x = 0, y = 0, z = 0;
+  ASSERT_EQ(std::sscanf(leaning.c_str(), "[%lf,%lf,%lf]", &x, &y, &z), 3) << leaning;
+  EXPECT_NEAR(x, 0.1, 1e-12);
+  EXPECT_NEAR(y, 0.12, 1e-12);
+  EXPECT_NEAR(z, 0.34, 1e-12);
+  for (const auto& [axes, up] : {std::pair("axes: x_up\n", "up: [0.9, 0.1, 0.2]\n"),
+                                 {"axes: y_up\n", "up: [0.1, 0.9, 0.2]\n"},
+                                 {"axes: z_up\n", "up: [0.2, 0.1, 0.9]\n"}})
+    EXPECT_EQ(places(std::string(axes) + up), places(up)) << axes;
+}
+
 TEST_F(ImportUp, WhatMeansNothingIsAnError) {
   const std::string csv = Csv(Turn{});
   const auto expect = [&](const std::string& up, const std::string& says) {

@@ -363,9 +363,7 @@ Eigen::Quaterniond ImportMap::AxesTurn() const {
 }
 
 Eigen::Quaterniond ImportMap::WorldTurn() const {
-  const Eigen::Quaterniond turn = AxesTurn();
-  if (!up) return turn;
-  return Eigen::Quaterniond::FromTwoVectors(turn * Up(), Eigen::Vector3d::UnitZ()) * turn;
+  return up ? Eigen::Quaterniond::FromTwoVectors(Up(), Eigen::Vector3d::UnitZ()) : AxesTurn();
 }
 
 Eigen::Vector3d ImportMap::Up() const {
