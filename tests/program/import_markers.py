@@ -137,6 +137,18 @@ def check_tables():
     lost[150:155, 5] = np.nan
     said = expect_made("take.csv", plain_csv(lost), PLAIN + entities())
     assert "hand: 3 markers" in said.stdout and "bridged in 5 poses" in said.stdout, said.stdout
+    # Two of four, and three of four on one line: it is bridged, too.
+    two = POINTS.copy()
+    two[150:155, [0, 2]] = np.nan
+    said = expect_made("take.csv", plain_csv(two), PLAIN + entities(), within=1e-3)
+    assert "cup: 4 markers" in said.stdout and "two seen, bridged in 5 poses" in said.stdout, said.stdout
+    one = two.copy()
+    one[152, 1] = np.nan
+    said = import_file("take.csv", plain_csv(one), PLAIN + entities())
+    assert said.returncode == 0 and "two seen, bridged in 4 poses" in said.stdout, said.stdout
+    two[150:175, [0, 2]] = np.nan
+    said = import_file("take.csv", plain_csv(two), PLAIN + entities())
+    assert said.returncode == 2 and "'cup_a + cup_b + cup_c + cup_d' is not tracked for 0.43" in said.stderr, said.stderr
     lost[150:175, 5] = np.nan
     said = import_file("take.csv", plain_csv(lost), PLAIN + entities())
     assert said.returncode == 2 and "'h1 + h2 + h3' is not tracked for 0.43" in said.stderr and "lost: unknown" in said.stderr, said.stderr

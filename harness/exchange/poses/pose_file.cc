@@ -132,8 +132,8 @@ class MarkerBody {
     poses_.has_orientations = true;
     const double mm = 1e3 * map_.MetresPerUnit();
     poses_.quality += fmt::format(
-        "{}: {} markers: off their shape by {:.2f} mm (mean), {:.2f} mm (most, at {:.3f} s); a gap "
-        "of one bridged in {} poses\n",
+        "{}: {} markers: off their shape by {:.2f} mm (mean), {:.2f} mm (most, at {:.3f} s); two "
+        "seen, bridged in {} poses\n",
         name_, e_.markers.size(), fitted > 0 ? sum / static_cast<double>(fitted) * mm : 0,
         off.most * mm, off.most_s, fits.size() - fitted);
     if (off.count > 0)
@@ -188,14 +188,14 @@ class MarkerBody {
     return FitOf(of, seen);
   }
 
-  /// Where all but one marker are seen for a short time, and these do not tell how it is turned:
-  /// it turns evenly, and those that are seen say where it is.
+  /// Where two markers are seen for a short time, or more on one line, which do not tell how it is
+  /// turned: it turns evenly, and those that are seen say where it is.
   void Bridge(std::map<double, Fit>& fits) const {
     std::map<double, Fit> between;
     for (const auto& [t_s, frame] : frames_) {
       const auto after = fits.upper_bound(t_s);
       if (fits.contains(t_s) || after == fits.begin() || after == fits.end() || FitTo(frame) ||
-          frame.Seen() + 1 < shape_.size())
+          frame.Seen() < 2)
         continue;
       const auto before = std::prev(after);
       if (after->first - before->first > map_.bridge_s + 1e-9) continue;
