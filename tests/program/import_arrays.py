@@ -142,7 +142,15 @@ def check_json():
     for name in ("unity.jsonl", "unity.ndjson", "unity.json"):
         expect_carried(name, "\n".join(lines) + "\n", unity)
     said = expect_carried("unity.jsonl", "\n".join(['{"program": "log 2", "unit": "m"}'] + lines), unity)
-    assert "1 of 302 frames have nothing that the map asks for" in said.stderr, said.stderr
+    assert "1 of 302 frames have no time, or nothing that the map asks for" in said.stderr, said.stderr
+    untimed = [json.dumps(json.loads(lines[100]) | more) for more in ({"time": None}, {})]
+    untimed[1] = untimed[1].replace('"time"', '"when"')
+    said = expect_carried("unity.jsonl", "\n".join(lines[:100] + untimed + lines[100:]), unity)
+    assert "2 of 303 frames have no time, or nothing that the map asks for" in said.stderr, said.stderr
+    expect_refused("unity.jsonl", "\n".join(line.replace('"time"', '"when"') for line in lines), unity, "no frame has 'time'", "there is no 'time'")
+    # A file of one line is of lines, by its name.
+    expect_refused("unity.jsonl", lines[0] + "\n", unity, "'{x,y,z}' has 1 poses in the file")
+    expect_refused("unity.json", lines[0] + "\n", unity, "the file is one object")
     # One body a line, one object of columns, a gripper.
     rows = [{"n": n, "t": t, "p": list(at[i])} for i, t in enumerate(TIMES) for n, at in (("cup", CUPS), ("hand", HANDS))]
     by_rows = (base + "t: t\ntime_unit: s\nentities:\n" + TABLE + f"  cup: {{position: \"[n=cup].p\", {CUP}}}\n"

@@ -28,7 +28,10 @@ bool IsJsonLines(const std::string& typed) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(typed, error)) return typed.ends_with(".jsonl");
   if (typed.ends_with(".yaml") || typed.ends_with(".yml")) return false;
-  return OpenRegular(typed).get() == '{';
+  std::ifstream file = OpenRegular(typed);
+  std::string head(4, '\0');
+  file.read(head.data(), 4);
+  return head.starts_with('{') || head == "\xEF\xBB\xBF{";
 }
 
 /// "" if the recording cannot be read, which whoever reads all of it reports.

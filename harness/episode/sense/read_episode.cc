@@ -52,7 +52,8 @@ class EpisodeReader {
     ++line_;
     if (TakeUsualFrame(text)) return;
     if (text.find_first_not_of(" \r") == std::string::npos) return;
-    auto document = ParseJson(file_, text);
+    const bool is_marked = line_ == 1 && text.starts_with("\xEF\xBB\xBF");
+    auto document = ParseJson(file_, is_marked ? text.substr(3) : text);
     if (!document) return Report(std::move(document.error()));
     DiagnosticList errors(*document);
     if (!header_) {

@@ -333,12 +333,17 @@ void FoundPoses::AddTime(const std::map<std::string, std::vector<std::string>>& 
                         time.doubt.empty() ? "" : "# " + time.doubt);
 }
 
+bool IsJsonLines(const std::string& path, std::string_view text) {
+  const std::size_t end = std::min(text.find('\n'), text.size());
+  const bool goes_on = text.find_first_not_of(" \t\n", end) != std::string_view::npos;
+  return (goes_on || (EndingOf(path) != ".json" && text.starts_with('{'))) &&
+         Json::accept(text.substr(0, end));
+}
+
 Result<FoundPoses> FindJsonPoses(const std::string& path) {
   PREHEND_TRY(std::string text, ReadTextFile(path, kMostProposedBytes));
   std::vector<Json> roots;
-  const std::size_t first_end = std::min(text.find('\n'), text.size());
-  const bool is_lines = text.find_first_not_of(" \t\r\n", first_end) != std::string::npos &&
-                        Json::accept(text.substr(0, first_end));
+  const bool is_lines = IsJsonLines(path, text);
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = is_lines ? std::min(text.find('\n', begin), text.size()) : text.size();
     Json root = Json::parse(std::string_view(text).substr(begin, end - begin), nullptr,

@@ -26,6 +26,8 @@ inline constexpr std::size_t kMostJsonFrames = 1'000'000;
 Result<PoseFile> ReadBvhPoses(const std::string& path, const MapFile& map);
 /// JSON, or lines of it. One frame is kept at a time.
 Result<PoseFile> ReadJsonPoses(const std::string& path, const MapFile& map);
+/// A value on each line: the first line is one, and others follow or the file is called so.
+bool IsJsonLines(const std::string& path, std::string_view text);
 /// The points of C3D. The file says some of what a map says: its map is read with that.
 Result<TableLayout> LayoutOfC3d(const std::string& path);
 Result<PoseFile> ReadC3dPoses(const std::string& path, const MapFile& map);

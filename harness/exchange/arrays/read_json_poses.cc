@@ -183,10 +183,7 @@ class JsonRows : public RowSource {
 
   /// What is wrong with the file or with the map.
   Diagnostics Load() {
-    const std::size_t first_end = text_.find('\n');
-    const bool is_lines = first_end != std::string::npos &&
-                          text_.find_first_not_of(" \t\n", first_end) != std::string::npos &&
-                          Json::accept(text_.substr(0, first_end));
+    const bool is_lines = !is_line_ && IsJsonLines(file_, text_);
     JsonPath frames;
     if (map_.frames) {
       if (const auto path = ParseJsonPath(map_.frames->value))
@@ -236,10 +233,13 @@ class JsonRows : public RowSource {
         asked_, [&](const AskedPath& one) { return one.name.value == name.value; });
     if (is_line_ && path.width == 0 && !(map_.t && &path == &asked_.front())) return std::nullopt;
     if (path.found == 0) {
-      errors.AddUnknownName(name.where,
-                            fmt::format("no frame has '{}': there is no '{}'", name.value,
-                                        ReadableName(path.miss.name)),
-                            path.miss.name, path.miss.names);
+      errors.AddUnknownName(
+          name.where,
+          fmt::format("no frame has '{}': {}", name.value,
+                      path.miss.name.empty()
+                          ? "it is null"
+                          : fmt::format("there is no '{}'", ReadableName(path.miss.name))),
+          path.miss.name, path.miss.names);
       return std::nullopt;
     }
     return Rows{.count = count_,
@@ -252,9 +252,10 @@ class JsonRows : public RowSource {
   }
 
   std::string Note() const override {
-    return left_out_ == 0 ? ""
-                          : fmt::format("{} of {} frames have nothing that the map asks for",
-                                        left_out_, count_ + left_out_);
+    return left_out_ == 0
+               ? ""
+               : fmt::format("{} of {} frames have {} that the map asks for", left_out_,
+                             count_ + left_out_, map_.t ? "no time, or nothing" : "nothing");
   }
   std::vector<int> Lines() const override { return lines_; }
   std::string Columns(const std::string&, std::size_t) const override { return ""; }
@@ -288,16 +289,17 @@ class JsonRows : public RowSource {
       for (const auto& [key, member] : frame.items())
         if (members_.size() < 20)
           members_.push_back(ReadableName(key) + (member.is_array() ? "[*]" : ""));
-    bool has_any = !map_.t;
+    bool has_any = !map_.t, has_time = true;
     for (AskedPath& path : asked_) {
       JsonMiss miss;
-      if (FindInJson(frame, path.parts.front(), miss))
-        has_any = true;
-      else if (path.found == 0 && miss.steps >= path.miss.steps)
-        path.miss = std::move(miss);
+      const Json* const value = FindInJson(frame, path.parts.front(), miss);
+      has_any = has_any || value;
+      // A line that comes is told what it lacks.
+      if (map_.t && &path == &asked_.front() && !is_line_) has_time = value && !value->is_null();
+      if (!value && path.found == 0 && miss.steps >= path.miss.steps) path.miss = std::move(miss);
     }
-    left_out_ += has_any ? 0 : 1;
-    if (!has_any) return "";  // the head of a log
+    left_out_ += has_any && has_time ? 0 : 1;
+    if (!has_any || !has_time) return "";  // the head of a log
     for (AskedPath& path : asked_) {
       if (std::string why = TakePath(frame, path); !why.empty())
         return fmt::format("frame {}: {}", count_, why);
