@@ -13,6 +13,8 @@ import random
 import subprocess
 import sys
 import tempfile
+import warnings
+import zipfile
 
 import numpy as np
 
@@ -213,6 +215,17 @@ def npz(compressed=False, **arrays):
     return out.getvalue()
 
 
+def with_second(content, name, array, shape=None):
+    """With one more array, whose header may say another shape."""
+    one, out = io.BytesIO(), io.BytesIO(content)
+    np.save(one, array)
+    with zipfile.ZipFile(out, "a") as file, warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # that there is one of this name
+        was = b"(%d, %d), " % array.shape
+        file.writestr(name, one.getvalue().replace(was, shape or was, 1))
+    return out.getvalue()
+
+
 def check_npz():
     base = "unit: m\naxes: z_up\nquaternion_order: xyzw\n"
     arrays = {"t": np.array(TIMES), "cup": np.hstack([CUPS, np.tile(XYZW, (FRAMES, 1))]), "hand": HANDS}
@@ -244,6 +257,8 @@ def check_npz():
             (npz(**{**arrays, "hand": HANDS.astype(str)}), one, "are of the type", "numbers are read"),
             (npz(**{**arrays, "hand": np.where(np.arange(FRAMES)[:, None] == 7, np.nan, HANDS)}), one, "in row 7", "missing: [nan]"),
             (whole[:1000], one, "is cut off"), (b"PK\3\4" + whole[4:].replace(b"PK\1\2", b"PK\1\3", 1), one, "at byte"),
+            (with_second(whole, "hand.npy", HANDS[::-1]), one, "at byte", "a second array is called 'hand'"),
+            (with_second(npz(t=arrays["t"], cup=arrays["cup"]), "hand.npy", HANDS, b"(-301, 3), "), one, "its shape is (-301, 3)"),
             (whole.replace(b"NUMPY", b"NUMPX", 1), one, "checksum"), (b"", one, "is no .npz file"), (b"PK\5\6", one, "")):
         expect_refused("a.npz", content, map_text, *why)
     # Each array has fewer than the map may ask for, all together have more.

@@ -304,6 +304,8 @@ std::string ReadNumpy(std::string_view bytes, NumpyArray& array, std::size_t mos
                        ReadableName(type.substr(0, type.find_first_of(",}"))));
   std::string_view shape = ValueOfKey(header, "'shape'");
   shape = shape.substr(0, shape.find(')'));
+  if (shape.find_first_not_of("(0123456789, ") != std::string_view::npos)
+    return fmt::format("its shape is {})", ReadableName(shape));
   std::size_t count = 1;
   while ((shape.remove_prefix(std::min(shape.find_first_of("0123456789"), shape.size())),
           !shape.empty())) {
@@ -371,7 +373,8 @@ class NpzRows : public RowSource {
       if (!reader.ok || !is_entry)
         return fmt::format("at byte {}: its list of files is damaged", at);
       if (key.ends_with(".npy")) key.resize(key.size() - 4);
-      entries_.emplace(ReadableName(key), entry);
+      if (!entries_.emplace(ReadableName(key), entry).second)
+        return fmt::format("at byte {}: a second array is called '{}'", at, ReadableName(key));
     }
     return "";
   }

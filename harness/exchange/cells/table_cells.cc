@@ -91,7 +91,7 @@ std::optional<double> NumberOf(std::string_view cell, bool decimal_comma) {
 
 std::optional<double> SecondsOfIsoTime(std::string_view cell) {
   double days = 0;
-  if (cell.find(':') != 2) {
+  if (cell.find(':') > 2) {
     const int year = TakeDigits(cell, 4, "-/"), month = TakeDigits(cell, 2, "-/"),
               day = TakeDigits(cell, 2, "T ");
     const std::chrono::year_month_day date{std::chrono::year(year),
@@ -100,7 +100,8 @@ std::optional<double> SecondsOfIsoTime(std::string_view cell) {
     if (year < 0 || month < 0 || day < 0 || !date.ok()) return std::nullopt;
     days = static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
   }
-  const int hour = TakeDigits(cell, 2, ":"), minute = TakeDigits(cell, 2, ":");
+  const int hour = TakeDigits(cell, cell.find(':') == 1 ? 1 : 2, ":"),
+            minute = TakeDigits(cell, 2, ":");
   const std::size_t zone_at = std::min(cell.find_first_of("Z+-"), cell.size());
   const auto seconds = NumberOf(cell.substr(0, zone_at), true);
   const auto zone = ZoneOf(cell.substr(zone_at));

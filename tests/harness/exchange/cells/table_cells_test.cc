@@ -27,6 +27,8 @@ TEST(TableCells, TimesOfIso8601) {
   EXPECT_EQ(SecondsOfIsoTime("1970-01-02T00:00:00.25Z"), 86400.25);
   EXPECT_EQ(SecondsOfIsoTime("1970-01-02 02:00:01,5+02:00"), 86401.5);
   EXPECT_EQ(SecondsOfIsoTime("10:00:00.5"), 36000.5);
+  EXPECT_EQ(SecondsOfIsoTime("9:59:57.5"), 35997.5);
+  EXPECT_EQ(SecondsOfIsoTime("1970-01-02 2:00:01"), 93601);
   for (const char* text : {"2026-02-30T10:00:00", "2026-01-01", "25:00:00", "10:61:00", "x", "12"})
     EXPECT_EQ(SecondsOfIsoTime(text), std::nullopt) << text;
 }
