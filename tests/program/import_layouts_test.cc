@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <sstream>
+#include <tuple>
 
 #include "tests/program/import_csv.h"
 #include "tests/program/layout_files.h"
@@ -277,19 +278,21 @@ TEST(ImportLayouts, VariantsOfEuroc) {
 }
 
 TEST(ImportLayouts, TimesOfDayPassMidnight) {
-  const auto clock = [](int i) {
+  const auto clock = [](int i, const char* hour = "%02.0f:") {
     const double t = std::fmod(86'398 + i / kRate_hz, 86'400);
-    return Text(std::floor(t / 3600), "%02.0f:") +
-           Text(std::fmod(std::floor(t / 60), 60), "%02.0f:") + Text(std::fmod(t, 60), "%09.6f");
+    return Text(std::floor(t / 3600), hour) + Text(std::fmod(std::floor(t / 60), 60), "%02.0f:") +
+           Text(std::fmod(t, 60), "%09.6f");
   };
-  std::string csv = "when,x,y,z\n", json;
+  std::string csv = "when,x,y,z\n", one_digit = csv, json;
   for (int i = 0; i < kFrames; ++i) {
     const std::string three = Three(CupAt(i / kRate_hz), 1, ",");
     csv += clock(i) + "," + three + "\n";
+    one_digit += clock(i, "%.0f:") + "," + three + "\n";
     json += "{\"when\": \"" + clock(i) + "\", \"p\": [" + three + "]}\n";
   }
   const std::string map = "unit: m\ntime_unit: iso\n";
-  ExpectCup("take.csv", csv, map + "columns: {time: when, position: [x, 'y', z]}\n");
+  for (const std::string& hours : {csv, one_digit})
+    ExpectCup("take.csv", hours, map + "columns: {time: when, position: [x, 'y', z]}\n");
   const Said said =
       ImportFile(FreshFolder("layouts"), "take.ndjson", json,
                  "import: 1\naxes: z_up\nt: when\n" + map +
@@ -371,6 +374,126 @@ TEST(ImportLayouts, RowsOfBodiesWithoutTimesAndWithTwoNames) {
   ExpectCarried("poses.csv", csv, map + "}\n");
   ExpectCarried("poses.csv", apart, map + "}\n");
   ExpectCarried("poses.csv", csv, map + ", time: frame}\ntime_unit: frame\n");
+}
+
+// ------------------------------------------------------------------------- heads, and what is
+// there
+
+TEST(ImportLayouts, AHeadMayBeLongAndItsBestPartTheLast) {
+  const std::string map = "axes: z_up\n" + Entities("s:Cup", "s:Hand");
+  std::string devices = "Devices\n1000\n,,Plate,,\nFrame,Sub Frame,Fx,Fy,Fz\n,,N,N,N\n";
+  for (int i = 0; i < 100; ++i) devices += std::to_string(i) + ",0,1,2,3\n";
+  std::string wrong = ViconCsv("Trajectories", "");  // with other places, so that it is told
+  for (std::size_t at = 0; (at = wrong.find(",mm,", at)) != std::string::npos; ++at)
+    wrong.replace(at, 4, ",cm,");
+  ExpectCarried("take.csv", devices + "\n" + ViconCsv("Objects", "Quaternion"), map);
+  ExpectCarried("take.csv", wrong + "\n" + ViconCsv("Objects", "Quaternion"), map);
+  ExpectCarried("take.csv", wrong + "\r\n" + WithCrLf(ViconCsv("Segments", "Quaternion")), map);
+  // Behind more rows of forces than are looked at for a head.
+  std::string many = devices;
+  while (many.size() < (std::size_t{5} << 20)) many += std::string(devices, devices.find("0,0,1"));
+  ExpectCarried("take.csv", many + "\n" + ViconCsv("Objects", "Quaternion"), map);
+  std::string events, comments;
+  for (int i = 0; i < 100; ++i) {
+    events += "EVENT\tE" + std::to_string(i) + "\t1\t0.1\n";
+    comments += "# line " + std::to_string(i) + "\n";
+  }
+  ExpectCarried("take.tsv", Replaced(QualisysTsv({}), "DESCRIPTION", events + "DESCRIPTION"),
+                "axes: z_up\n" + Entities());
+  ExpectCup("take.txt", comments + Rows([](int i) {
+                          return Text(1767225600 + i / kRate_hz) + " " +
+                                 Three(CupAt(i / kRate_hz), 1, " ") + " 0 0 0 1";
+                        }),
+            "");
+}
+
+TEST(ImportLayouts, WhatAHeadSaysAndIsNotSoIsTold) {
+  const auto said = [](const std::string& file, const std::string& bytes, const std::string& map) {
+    const Take take = Import(file, bytes, map);
+    EXPECT_EQ(take.said.exit_code, 0) << take.said.err;
+    return take.said.err;
+  };
+  const auto cut = [](const std::string& bytes) {  // behind a row
+    return bytes.substr(0, bytes.rfind('\n', bytes.size() * 9 / 10) + 1);
+  };
+  const std::string y_up = "axes: y_up\n" + Entities(), z_up = "axes: z_up\n" + Entities(),
+                    trc = Trc("Cup\t\t\tHand\t\t", "mm", 1000, "\n"),
+                    motive = Replaced(MotiveCsv({}), "Rotation Type",
+                                      "Total Frames in Take,900,Total Exported Frames,301,Rotation "
+                                      "Type");
+  const auto expect = [&](const std::string& err, const std::string& text) {
+    EXPECT_NE(err.find("warning: the head says " + text), std::string::npos) << err;
+  };
+  for (const auto& [file, bytes, map] : {std::tuple("take.trc", trc, y_up),
+                                         {"take.csv", motive, y_up},
+                                         {"take.tsv", QualisysTsv({}), z_up}}) {
+    EXPECT_EQ(said(file, bytes, map).find("head"), std::string::npos);
+    const std::string err = said(file, cut(bytes), map);
+    expect(err, "301 frames, 2");
+    EXPECT_NE(err.find("are there: is the file cut off?"), std::string::npos) << err;
+  }
+  const std::string rate = "30 frames a second, but poses are 0.01667 s apart: 60 Hz";
+  expect(said("take.trc", Replaced(trc, "\n60\t60\t", "\n30\t60\t"), y_up), rate);
+  expect(said("take.csv", Replaced(motive, "Export Frame Rate,60", "Export Frame Rate,30"), y_up),
+         rate);
+  expect(said("take.tsv", Replaced(QualisysTsv({}), "FREQUENCY\t60", "FREQUENCY\t30"), z_up), rate);
+  // A rate of 0 is none.
+  const std::string vicon = Replaced(ViconCsv("Objects", "Helical"), "Objects\n60", "Objects\n0"),
+                    map = "axes: z_up\n" + Entities("s:Cup", "s:Hand");
+  ExpectRefused("take.csv", vicon, map, "time_unit: frame needs rate_hz");
+  ExpectCarried("take.csv", vicon, map + "rate_hz: 60\n");
+}
+
+TEST(ImportLayouts, AMapThatContradictsAHeadIsRefused) {
+  const auto refused = [](const std::string& file, const std::string& bytes, const std::string& map,
+                          const std::string& key) {
+    ExpectRefused(file, bytes, map + key, "'" + key.substr(0, key.find(':')) + "' contradicts the");
+  };
+  const std::string y_up = "axes: y_up\n" + Entities(), z_up = "axes: z_up\n" + Entities();
+  refused("take.csv", MotiveCsv({}), y_up, "time_unit: ms\n");
+  refused("take.csv", MotiveCsv({}), y_up, "separator: tab\n");
+  refused("take.trc", Trc("Cup\t\t\tHand\t\t", "mm", 1000, "\n"), y_up, "time_unit: us\n");
+  refused("take.tsv", QualisysTsv({}), z_up, "time_unit: ns\n");
+  refused("take.tsv", QualisysTsv({}), z_up, "separator: comma\n");
+  refused("take.csv", ViconCsv("Objects", "Helical"), "axes: z_up\n" + Entities("s:Cup", "s:Hand"),
+          "time_unit: s\n");
+  for (const char* key : {"separator: comma", "decimal: point", "header_line: 1"})
+    ExpectRefused("take.json", "[]", "axes: z_up\nunit: m\n" + Entities() + key + "\n",
+                  "is that of CSV files; this is none");
+  // TUM has no head, and EuRoC's says its units in brackets.
+  const auto rows = [](double per_m, double per_s, const std::string& separator) {
+    return Rows([&](int i) {
+      return std::to_string(std::llround(per_s * 1305031102 + i / kRate_hz * per_s)) + separator +
+             Three(CupAt(i / kRate_hz), per_m, separator) + separator +
+             (separator == "," ? "1,0,0,0" : "0 0 0 1");
+    });
+  };
+  ExpectCup("take.txt", rows(1, 1e9, " "), "time_unit: ns\n");
+  ExpectCup("take.txt", rows(1000, 1e6, " "), "time_unit: us\nunit: mm\n");
+  const std::string head =
+      "#timestamp [us],p_x [mm],p_y [mm],p_z [mm],q_w [],q_x [],q_y [],q_z []\n";
+  for (const char* key : {"", "unit: mm\n", "time_unit: us\n"})
+    ExpectCup("take.csv", head + rows(1000, 1e6, ","), key);
+  ExpectCup("take.csv", head + rows(1000, 1e6, ","), "unit: m\n", "'unit' contradicts the file");
+  ExpectCup("take.csv", head + rows(1000, 1e6, ","), "time_unit: ns\n",
+            "'time_unit' contradicts the file");
+  ExpectCup("take.csv", "#timestamp,p_x,p_y,p_z,q_w,q_x,q_y,q_z\n" + rows(1000, 1e6, ","),
+            "time_unit: us\nunit: mm\n");
+}
+
+TEST(ImportLayouts, AFileThatIsNotThereOrEmptyIsNamed) {
+  const auto folder = FreshFolder("layouts");
+  WriteFile(folder / "map.yaml", "import: 1\n" + kMotiveMap);
+  WriteFile(folder / "empty.csv", "");
+  for (const auto& [file, why] : {std::pair("none.csv", "none.csv: error: no such file"),
+                                  {"empty.csv", "empty.csv: error: the file is empty"}}) {
+    const Said said =
+        Prehend({"import", (folder / file).string(), "--map", (folder / "map.yaml").string(), "-o",
+                 (folder / "x.jsonl").string()});
+    EXPECT_EQ(said.exit_code, 2);
+    EXPECT_NE(said.err.find(why), std::string::npos) << said.err;
+    EXPECT_EQ(said.err.find("map.yaml:"), std::string::npos) << said.err;
+  }
 }
 
 /// The map of docs/motion-capture.md that has this text.

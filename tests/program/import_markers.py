@@ -71,6 +71,11 @@ def expect_made(name, content, map_text, within=2e-6, skip=()):
     return said
 
 
+def expect_quiet(name, content, map_text):
+    said = expect_made(name, content, map_text)
+    assert "the head" not in said.stderr, said.stderr
+
+
 # ------------------------------------------------------------------------------------------------ tables
 
 def plain_csv(points):
@@ -223,8 +228,10 @@ class C3d:
     def group(self, number, name):
         return struct.pack("bb", len(name), -number) + name.encode() + self.word(3) + b"\0"
 
-    def write(self, points, names, scale=1000.0):
+    def write(self, points, names, scale=1000.0, last=None, said=None, rate=RATE, long=True):
+        """`last`: frame of the head; `said`: POINT:FRAMES, 0 for none; `long`: with TRIAL's fields."""
         frames, count = points.shape[:2]
+        last, said = last or 6 + frames, frames if said is None else said
         text = b""
         for k in range(0, count, self.split):
             some = names[k:k + self.split]
@@ -234,13 +241,15 @@ class C3d:
         sign = -1 if self.real else 1
         parameters = (self.group(1, "POINT") + self.parameter(1, "USED", 2, [], self.word(count)) +
                       self.parameter(1, "SCALE", 4, [], self.number(sign * self.scale)) +
-                      self.parameter(1, "RATE", 4, [1], self.number(RATE)) + self.parameter(1, "FRAMES", 2, [], self.word(frames)) +
-                      self.parameter(1, "UNITS", -1, [2], self.units.encode()) + text + self.group(2, "TRIAL") +
-                      self.parameter(2, "ACTUAL_START_FIELD", 2, [2], self.word(7) + self.word(0)) +
-                      self.parameter(2, "ACTUAL_END_FIELD", 2, [2], self.word(6 + frames) + self.word(0), last=True))
+                      self.parameter(1, "RATE", 4, [1], self.number(rate)) +
+                      (self.parameter(1, "FRAMES", 2, [], self.word(said)) if said else b"") +
+                      self.parameter(1, "UNITS", -1, [2], self.units.encode()) + text)
+        if long:
+            parameters += (self.group(2, "TRIAL") + self.parameter(2, "ACTUAL_START_FIELD", 2, [2], self.word(7) + self.word(0)) +
+                           self.parameter(2, "ACTUAL_END_FIELD", 2, [2], self.word(6 + frames) + self.word(0), last=True))
         blocks = (4 + len(parameters) + 511) // 512
         parameters = (b"\1\x50" + bytes([blocks, self.processor]) + parameters).ljust(512 * blocks, b"\0")
-        head = (b"\2\x50" + self.word(count) + self.word(self.analogs) + self.word(7) + self.word(6 + frames) + self.word(10) +
+        head = (b"\2\x50" + self.word(count) + self.word(self.analogs) + self.word(7) + self.word(last) + self.word(10) +
                 self.number(sign * self.scale) + self.word(2 + blocks) + self.word(1) + self.number(RATE)).ljust(298, b"\0")
         head = (head + self.word(12345 if self.events else 0)).ljust(512, b"\0")
         data = io.BytesIO()
@@ -316,6 +325,18 @@ def check_c3d():
     lost = [f"s:{n}" for n in ("cup_1", "cup_2", "cup_3", "x", "RHand", "y", "z")]
     said = import_file("take.c3d", C3d(84, True).write(POINTS, lost), documented('"s:cup_1"'))
     assert said.returncode == 0 and "cup: 3 markers" in said.stdout and "in the file" not in said.stderr, said.stderr
+    # Heads that contradict what is there: all of it is read.
+    for more, text in (({"last": 256, "long": False}, "the head says 250 and 301 frames, 301 are there\n"), ({"last": 256}, "250 and 301 frames"),
+                       ({"last": 256, "said": 0, "long": False}, "the head says 250 frames, 301 are there\n"),
+                       ({"rate": 30}, "the head says 30 and 60 frames a second: the first counts\n")):
+        for real in (True, False):
+            said = import_file("take.c3d", C3d(84, real).write(POINTS, NAMES, **more), "axes: z_up\n" + entities())
+            assert said.returncode == 0 and text in said.stderr and len(recording()) == FRAMES, (more, said.stderr)
+    padded = C3d(84, True).write(POINTS, NAMES)
+    expect_quiet("take.c3d", padded + b"\0" * (-len(padded) % 512), "axes: z_up\n" + entities())
+    long = np.concatenate([POINTS] * 233)
+    said = import_file("take.c3d", C3d(84, False).write(long, NAMES, last=65535, said=65535, long=False), "axes: z_up\nsure: [time, axes]\n" + entities())
+    assert said.returncode == 0 and "the head says 65529 frames, 70133 are there" in said.stderr and len(recording()) == 70133, said.stderr
     whole = C3d(84, True).write(POINTS, NAMES)
     (folder / "take.c3d").write_bytes(whole)
     said = run("import", folder / "take.c3d", "--propose")

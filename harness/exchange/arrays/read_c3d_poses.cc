@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <set>
 
 #include "harness/base/base/number_text.h"
 #include "harness/base/base/text_file.h"
@@ -69,14 +70,20 @@ class C3dFile {
     if (points_ == 0) return "it has no points: no markers";
     if (!std::isfinite(scale_) || (!is_real_ && scale_ == 0))
       return fmt::format("at byte 12: its points are scaled by {}", scale_);
-    frames = FramesSaid();
+    const std::set<std::size_t> said = FramesSaid();
+    const std::size_t until = parameters_at > data_at_ ? parameters_at : bytes_.size(),
+                      room = (until - std::min(until, data_at_)) / frame_bytes_;
+    if (data_at_ < kBlock || (!said.empty() && room < *said.begin()))
+      return fmt::format("at byte {}: it is cut off: {} frames of {} bytes are said, {} are there",
+                         data_at_, said.empty() ? 0 : *said.begin(), frame_bytes_, room);
+    frames = FramesThere(said, room);
     if (frames * points_ > kMostNumbers / 3)
       return fmt::format("{} frames of {} points; at most {} numbers are read", frames, points_,
                          kMostNumbers);
-    const std::size_t data = bytes_.size() - std::min(bytes_.size(), data_at_);
-    if (data_at_ < kBlock || data / frame_bytes_ < frames)
-      return fmt::format("at byte {}: it is cut off: {} frames of {} bytes are said, {} are there",
-                         data_at_, frames, frame_bytes_, data / frame_bytes_);
+    if (std::string doubt = CountDoubt(said, frames); !doubt.empty()) notes.push_back(doubt);
+    if (Real(20) > 0 && std::abs(rate_hz / Real(20) - 1) > 1e-3)
+      notes.push_back(fmt::format("the head says {:g} and {:g} frames a second: the first counts",
+                                  rate_hz, Real(20)));
     TakeLabels(points_);
     if (const auto units = parameters_.find("POINT:UNITS");
         units != parameters_.end() && !units->second.texts.empty())
@@ -213,7 +220,7 @@ class C3dFile {
   }
 
   /// The header counts to 65,535; of longer files other places say it.
-  std::size_t FramesSaid() const {
+  std::set<std::size_t> FramesSaid() const {
     const std::size_t first = Word(6), last = Word(8);
     const auto field = [&](const char* name) -> std::size_t {
       const auto found = parameters_.find(name);
@@ -223,12 +230,32 @@ class C3dFile {
     };
     const std::size_t begin = field("TRIAL:ACTUAL_START_FIELD"),
                       end = field("TRIAL:ACTUAL_END_FIELD");
-    if (begin > 0 && end >= begin) return end - begin + 1;
-    const double many = NumberOf("POINT:LONG_FRAMES", 0);
-    if (many >= 1 && many < 1e9) return static_cast<std::size_t>(many);
-    const double few = NumberOf("POINT:FRAMES", 0);
-    if (last == 65535 && few != 0) return static_cast<std::size_t>(few < 0 ? few + 65536 : few);
-    return last >= first ? last - first + 1 : 0;
+    const double many = NumberOf("POINT:LONG_FRAMES", 0), few = NumberOf("POINT:FRAMES", 0);
+    std::set<std::size_t> said;
+    if (begin > 0 && end >= begin)
+      said.insert(end - begin + 1);
+    else if (many >= 1 && many < 1e9)
+      said.insert(static_cast<std::size_t>(many));
+    if (!said.empty() && *said.begin() > 65535) return said;
+    if (few != 0 && few != 65535 && few != -1 && std::abs(few) < 1e9)
+      said.insert(static_cast<std::size_t>(few < 0 ? few + 65536 : few));
+    if (last >= first && (last != 65535 || said.empty())) said.insert(last - first + 1);
+    return said;
+  }
+
+  /// The most that are said and are there; and what follows, but for zeros that fill a block.
+  std::size_t FramesThere(const std::set<std::size_t>& said, std::size_t room) const {
+    std::size_t there = 0;
+    for (const std::size_t count : said)
+      if (count <= room) there = count;
+    if ((room - there) * frame_bytes_ < kBlock) return there;
+    const auto is_empty = [&](std::size_t frame) {
+      return std::string_view(bytes_)
+                 .substr(data_at_ + frame * frame_bytes_, frame_bytes_)
+                 .find_first_not_of('\0') == std::string_view::npos;
+    };
+    while (room > there && is_empty(room - 1)) --room;
+    return room;
   }
 
   std::string bytes_;

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "harness/exchange/poses/table_layout.h"
+
 namespace prehend::exchange {
 namespace {
 
@@ -35,7 +37,7 @@ double UsualSpeed(const PoseFile& poses) {
 class Judge {
  public:
   Judge(const PoseFile& poses, const MapFile& map)
-      : poses_(poses), map_(map.map), errors_(map.document) {}
+      : poses_(poses), map_(map.map), layout_(map.layout.get()), errors_(map.document) {}
 
   Implausible Find() {
     if (!map_.zero_is_missing) Zeros();
@@ -116,6 +118,17 @@ class Judge {
                                           : "correct rate_hz or time_unit";
       return guess;
     }
+    const double mean_hz = static_cast<double>(poses_.rows - 1) / poses_.last_s;
+    if (layout_ && layout_->rate_hz && layout_->time_unit == TimeUnit::kSecond &&
+        std::abs(rate_hz / *layout_->rate_hz - 1) > 0.05 &&
+        std::abs(mean_hz / *layout_->rate_hz - 1) > 0.05) {
+      guess.signs = {
+          fmt::format("the head says {:g} frames a second, but poses are {:.4g} s apart: "
+                      "{:.4g} Hz",
+                      *layout_->rate_hz, step_s, rate_hz)};
+      guess.remedy = "the times count";
+      return guess;
+    }
     if (rate_hz >= kLiftsRate_hz && rate_hz <= kMostRate_hz) return guess;
     if (rate_hz >= kLeastRate_hz && rate_hz < kLiftsRate_hz) {
       guess.signs = {
@@ -170,6 +183,7 @@ class Judge {
 
   const PoseFile& poses_;
   const ImportMap& map_;
+  const TableLayout* const layout_;
   DiagnosticList errors_;
   Implausible found_;
 };

@@ -137,7 +137,7 @@ class MapProposer {
     } else {
       text = ReadTextFile(path_, kMaxPoseFileBytes);
       if (!text) return text.error();
-      layout_ = LayoutOf(*text);
+      PREHEND_TRY(layout_, LayoutOfTable(path_));
     }
     if (layout_) {
       says_unit_ = layout_->unit && layout_->says_unit;

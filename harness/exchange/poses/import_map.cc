@@ -221,6 +221,9 @@ void CheckMap(const ImportMap& map, PoseFormat format, const YamlNode& root,
     if (map.time_unit && !map.t)
       errors.Add(map.time_unit->where,
                  "'time_unit' is that of CSV files, and of 't'; this one has its own");
+    for (const char* key : {"separator", "decimal", "header_line"})
+      if (const YamlNode* const node = root.Find(key))
+        errors.Add(node->where, fmt::format("'{}' is that of CSV files; this is none", key));
   }
   CheckFrames(map, format, root, errors);
   if (map.time_unit && map.time_unit->value == TimeUnit::kFrame && !map.rate_hz)

@@ -136,9 +136,7 @@ class MarkerBody {
         "seen, bridged in {} poses\n",
         name_, e_.markers.size(), fitted > 0 ? sum / static_cast<double>(fitted) * mm : 0,
         off.most * mm, off.most_s, fits.size() - fitted);
-    if (off.count > 0)
-      poses_.notes.push_back(
-          off.Text(name_, "markers", poses_.file, map_.MetresPerUnit(), e_.residual_m));
+    AddNote(poses_, off.Text(name_, "markers", poses_.file, map_.MetresPerUnit(), e_.residual_m));
   }
 
  private:
@@ -218,6 +216,10 @@ class MarkerBody {
 };
 
 }  // namespace
+
+void AddNote(PoseFile& poses, std::string note) {
+  if (!note.empty()) poses.notes.push_back(std::move(note));
+}
 
 std::vector<PoseBody> BodiesOf(const ImportMap& map, DiagnosticList& errors) {
   std::vector<PoseBody> bodies;

@@ -70,6 +70,8 @@ struct PoseFile {
   std::vector<double> rows_s;       ///< their times, where what is lost is lost in rows
 };
 
+/// "": there is none.
+void AddNote(PoseFile& poses, std::string note);
 /// The bodies of the map, without poses. One that is two entities is an error.
 std::vector<PoseBody> BodiesOf(const ImportMap& map, DiagnosticList& errors);
 /// The grips and joints of the map, without values.

@@ -88,12 +88,12 @@ class CsvPoseReader {
     if (map_errors_.empty()) RefuseAbsentBodies(poses, map_, map_errors_);
     for (const auto& [name, wanted] : index_) {
       const double m = map_.MetresPerUnit();
-      const std::string left_out =
-          wanted.errors.Text(name, layout_ ? fmt::format("markers, by '{}',", layout_->error) : "",
-                             poses.file, m, wanted.most_error * m);
-      if (!left_out.empty()) poses.notes.push_back(left_out);
+      AddNote(poses, wanted.errors.Text(
+                         name, layout_ ? fmt::format("markers, by '{}',", layout_->error) : "",
+                         poses.file, m, wanted.most_error * m));
     }
     CheckTimes();
+    if (layout_ && layout_->frames) AddNote(poses, CountDoubt({*layout_->frames}, poses.rows));
   }
 
   /// Where the names of the columns are, of `poses.text`.
@@ -132,7 +132,7 @@ class CsvPoseReader {
     lines_before_text_ = line_;
     poses.unused.clear();
     const std::size_t rows = poses.rows;
-    TakeLine(poses.text, /*is_last=*/false);
+    goes_on_ = goes_on_ && TakeLine(poses.text, /*is_last=*/false);
     Diagnostics problems = Problems();
     problems_.clear();
     row_s = poses.rows > rows ? std::optional(row_s_) : std::nullopt;
@@ -420,9 +420,11 @@ class CsvPoseReader {
     poses.last_s = std::max(poses.last_s, t_s);
     if (map_.lost == Lost::kInRows && !streams_) poses.rows_s.push_back(t_s);
     ++poses.rows;
+    bool is_asked = false;
     for (std::size_t i = 0; i < poses.openings.size(); ++i) {
-      if (!has_bodies || name == BodyOf(poses.openings[i]))
-        TakeOpening(cells, opening_seats_[i], t_s, poses.openings[i]);
+      if (has_bodies && name != BodyOf(poses.openings[i])) continue;
+      TakeOpening(cells, opening_seats_[i], t_s, poses.openings[i]);
+      is_asked = true;
     }
     if (!has_bodies) {
       for (auto& [body, wanted] : index_) TakePose(cells, wanted.seats, t_s, wanted);
@@ -430,7 +432,8 @@ class CsvPoseReader {
     }
     const auto body = index_.find(name);
     if (body != index_.end()) return TakePose(cells, shared_, t_s, body->second);
-    if (std::ranges::find(poses.unused, name) == poses.unused.end() && poses.unused.size() < 1000)
+    if (!is_asked && poses.unused.size() < 1000 &&
+        std::ranges::find(poses.unused, name) == poses.unused.end())
       poses.unused.push_back(name);
   }
 

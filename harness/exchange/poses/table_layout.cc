@@ -2,8 +2,10 @@
 #include "harness/exchange/poses/table_layout.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -12,14 +14,16 @@
 namespace prehend::exchange {
 namespace {
 
-constexpr std::size_t kHeadLines = 60, kHeadBytes = std::size_t{4} << 20;
+constexpr std::size_t kHeadBytes = std::size_t{1} << 20;
+constexpr int kPartLines = 6;                                                ///< with the first row
+constexpr std::array kViconParts = {"Objects", "Segments", "Trajectories"};  ///< the best first
 
 using Lines = std::vector<std::string_view>;
 
 Lines HeadOf(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   Lines lines;
-  while (!text.empty() && lines.size() < kHeadLines) {
+  while (!text.empty()) {
     std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(line.size() + 1, text.size()));
     if (line.ends_with('\r')) line.remove_suffix(1);
@@ -41,6 +45,18 @@ std::string At(const std::vector<std::string>& words, std::size_t i) {
 void SetColumns(std::vector<Located<std::string>>& columns, std::initializer_list<const char*> of) {
   columns.clear();
   for (const char* name : of) columns.push_back({name, {}});
+}
+
+/// Of a head that says 0, or nothing, it is not known.
+std::optional<double> PositiveOf(std::string_view text) {
+  const std::optional<double> number = NumberOf(text, true);
+  return number && *number > 0 && std::isfinite(*number) ? number : std::nullopt;
+}
+
+std::optional<std::size_t> CountOf(std::string_view text) {
+  const std::optional<double> number = PositiveOf(text);
+  if (!number || *number > 1e9) return std::nullopt;
+  return static_cast<std::size_t>(*number);
 }
 
 bool IsNumber(std::string_view text) { return NumberOf(text, true).has_value(); }
@@ -66,6 +82,8 @@ std::optional<TableLayout> MotiveOf(const Lines& lines) {
   for (std::size_t i = 0; i + 1 < first.size(); i += 2) says[first[i]] = first[i + 1];
   layout.unit = UnitCalled(says["Length Units"]);
   layout.time_unit = TimeUnit::kSecond;
+  layout.rate_hz = PositiveOf(says["Export Frame Rate"]);
+  layout.frames = CountOf(says["Total Exported Frames"]);
   if (says["Coordinate Space"] == "Local")
     layout.notes.push_back(
         "its Coordinate Space is Local: bones are relative to their parents, and not to the room");
@@ -107,14 +125,22 @@ std::string ViconBody(std::string name) {
   return name.starts_with("Global ") && kind != std::string::npos ? name.substr(kind + 2) : name;
 }
 
+/// Its name, and blank cells.
+bool BeginsPart(std::string_view line, std::string_view part) {
+  return line.starts_with(part) && line.find_last_not_of(",;\t \r") == part.size() - 1;
+}
+
+/// A file of Vicon, whichever part is the first.
+bool IsOfParts(const Lines& lines) {
+  return lines.size() > 3 && lines[3].starts_with("Frame") &&
+         IsNumber(lines[1].substr(0, lines[1].find_first_of(",;\t")));
+}
+
 std::optional<TableLayout> ViconOf(const Lines& lines) {
-  for (const char* part : {"Objects", "Segments", "Trajectories"}) {
+  for (const char* part : kViconParts) {
     for (std::size_t i = 0; i + 3 < lines.size(); ++i) {
       const std::string_view line = lines[i], head = lines[i + 3];
-      if (!line.starts_with(part) ||
-          line.find_last_not_of(",;\t ") != std::string_view(part).size() - 1)
-        continue;
-      if (!head.starts_with("Frame") || head.size() < 6) continue;
+      if (!BeginsPart(line, part) || !head.starts_with("Frame") || head.size() < 6) continue;
       const Separator separator = head[5] == ';'    ? Separator::kSemicolon
                                   : head[5] == '\t' ? Separator::kTab
                                                     : Separator::kComma;
@@ -122,7 +148,7 @@ std::optional<TableLayout> ViconOf(const Lines& lines) {
                          .separator = separator,
                          .first_row = static_cast<int>(i) + 5,
                          .ends_at_blank = true};
-      layout.rate_hz = NumberOf(Words(lines[i + 1], separator).front(), true);
+      layout.rate_hz = PositiveOf(Words(lines[i + 1], separator).front());
       layout.time_unit = TimeUnit::kFrame;
       layout.columns.time = {"Frame", {}};
       const auto bodies = Words(lines[i + 2], separator), letters = Words(head, separator);
@@ -206,7 +232,8 @@ std::optional<TableLayout> QualisysOf(const Lines& lines) {
     if (words.front().empty() ||
         words.front().find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_") != std::string::npos)
       break;
-    if (words.front() == "FREQUENCY") layout.rate_hz = NumberOf(At(words, 1), true);
+    if (words.front() == "FREQUENCY") layout.rate_hz = PositiveOf(At(words, 1));
+    if (words.front() == "NO_OF_FRAMES") layout.frames = CountOf(At(words, 1));
     if (words.front() != "MARKER_NAMES" && words.front() != "BODY_NAMES") continue;
     while (words.back().empty()) words.pop_back();
     bodies.assign(words.begin() + 1, words.end());
@@ -262,7 +289,8 @@ std::optional<TableLayout> TrcOf(const Lines& lines) {
   TableLayout layout{.name = "a TRC file", .separator = Separator::kTab, .first_row = 6};
   const auto keys = Words(lines[1], Separator::kTab), values = Words(lines[2], Separator::kTab);
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    if (keys[i] == "DataRate") layout.rate_hz = NumberOf(At(values, i), true);
+    if (keys[i] == "DataRate") layout.rate_hz = PositiveOf(At(values, i));
+    if (keys[i] == "NumFrames") layout.frames = CountOf(At(values, i));
     if (keys[i] == "Units") layout.unit = UnitCalled(At(values, i));
   }
   layout.names = {"Frame#", "Time"};
@@ -283,9 +311,31 @@ std::optional<TableLayout> EurocOf(const Lines& lines) {
   head.remove_prefix(std::min(head.find_first_not_of("# "), head.size()));
   if (!head.starts_with("timestamp") || head.find("p_") == std::string_view::npos)
     return std::nullopt;
-  TableLayout layout{.name = "a CSV file of EuRoC", .yields = true, .first_row = 2};
-  for (std::string name : Words(head, Separator::kComma))
-    layout.names.push_back(name.substr(0, name.find(" [")));
+  TableLayout layout{.name = "a CSV file of EuRoC",
+                     .yields = true,
+                     .first_row = 2,
+                     .unit = Unit::kMetre,
+                     .says_unit = false,
+                     .time_unit = TimeUnit::kNanosecond,
+                     .says_time_unit = false};
+  static const std::map<std::string, TimeUnit> kTimes = {{"s", TimeUnit::kSecond},
+                                                         {"ms", TimeUnit::kMillisecond},
+                                                         {"us", TimeUnit::kMicrosecond},
+                                                         {"ns", TimeUnit::kNanosecond}};
+  for (const std::string& name : Words(head, Separator::kComma)) {
+    const std::size_t open = name.find(" [");
+    layout.names.push_back(name.substr(0, open));
+    if (open == std::string::npos) continue;
+    const std::string in = name.substr(open + 2, name.find(']', open) - open - 2);
+    if (name.starts_with("p_")) {
+      layout.unit = UnitCalled(in);
+      layout.says_unit = true;
+    } else if (const auto time = kTimes.find(in);
+               name.starts_with("timestamp") && time != kTimes.end()) {
+      layout.time_unit = time->second;
+      layout.says_time_unit = true;
+    }
+  }
   const auto column = [&](const char* begin, const char* end) {
     const auto found = std::ranges::find_if(layout.names, [&](const std::string& name) {
       return name.starts_with(begin) && name.ends_with(end);
@@ -294,8 +344,6 @@ std::optional<TableLayout> EurocOf(const Lines& lines) {
   };
   layout.columns.time = {"timestamp", {}};
   layout.columns.position = {column("p_", "_x"), column("p_", "_y"), column("p_", "_z")};
-  layout.unit = Unit::kMetre;
-  layout.time_unit = TimeUnit::kNanosecond;
   if (column("q_", "_w").value.empty()) return layout;  // of a tracker of one point
   layout.columns.quaternion = {column("q_", "_w"), column("q_", "_x"), column("q_", "_y"),
                                column("q_", "_z")};
@@ -322,6 +370,7 @@ std::optional<TableLayout> RowsOf(const Lines& lines) {
     layout.names = {"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"};
     layout.columns.time = {"timestamp", {}};
     layout.time_unit = TimeUnit::kSecond;
+    layout.says_time_unit = false;
     layout.quaternion_order = QuaternionOrder::kXyzw;
     SetColumns(layout.columns.quaternion, {"qx", "qy", "qz", "qw"});
   } else if (words.size() == 12) {
@@ -344,6 +393,11 @@ bool IsAlike(const T& a, const T& b) {
 /// Rates are written with few digits.
 bool IsAlike(double a, double b) { return std::abs(a / b - 1) < 1e-3; }
 
+void Contradict(const char* key, Where where, const TableLayout& layout, DiagnosticList& errors) {
+  errors.Add(where, fmt::format("'{}' contradicts the file: {} says otherwise", key, layout.name),
+             fmt::format("leave '{}' out", key));
+}
+
 /// What the file says, where the map is silent; otherwise they must agree.
 template <class T>
 void Agree(const std::optional<T>& of_file, std::optional<Located<T>>& of_map, const char* key,
@@ -352,18 +406,7 @@ void Agree(const std::optional<T>& of_file, std::optional<Located<T>>& of_map, c
   if (!of_map)
     of_map = Located<T>{*of_file, where};
   else if (!IsAlike(of_map->value, *of_file))
-    errors.Add(of_map->where,
-               fmt::format("'{}' contradicts the file: {} says otherwise", key, layout.name),
-               fmt::format("leave '{}' out", key));
-}
-
-/// Of a file; nothing of one that cannot be read.
-std::string HeadOfFile(const std::string& path) {
-  std::ifstream file = OpenRegular(path);
-  std::string head(kHeadBytes, '\0');
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
-  return head;
+    Contradict(key, of_map->where, layout, errors);
 }
 
 void Complete(TableLayout& layout, Where where, ImportMap& map, DiagnosticList& errors) {
@@ -387,8 +430,14 @@ void Complete(TableLayout& layout, Where where, ImportMap& map, DiagnosticList& 
   Agree(layout.angles_in_degrees, map.angles_in_degrees, "angle_unit", layout, where, errors);
   if (!layout.columns.time || layout.time_unit == TimeUnit::kFrame)
     Agree(layout.rate_hz, map.rate_hz, "rate_hz", layout, where, errors);
-  map.time_unit.reset();
-  if (layout.time_unit) map.time_unit = Located<TimeUnit>{*layout.time_unit, where};
+  if (layout.says_time_unit || !map.time_unit)
+    Agree(layout.time_unit, map.time_unit, "time_unit", layout, where, errors);
+  if (!layout.time_unit && map.time_unit) {
+    errors.Add(map.time_unit->where,
+               fmt::format("'time_unit' contradicts the file: {} has no times", layout.name),
+               "leave 'time_unit' out");
+    map.time_unit.reset();
+  }
   map.separator = layout.separator;
   map.zero_is_missing = map.zero_is_missing || layout.zero_is_missing;
   map.missing.insert(map.missing.end(), {"NULL", "NaN", "nan"});
@@ -410,8 +459,47 @@ std::optional<TableLayout> LayoutOf(std::string_view text) {
   return std::nullopt;
 }
 
+std::optional<bool> HeadGoesOn(std::string_view text) {
+  const Lines lines = HeadOf(text);
+  const auto begins = [&](const char* with) { return lines.front().starts_with(with); };
+  if (lines.empty() || !(begins("Format Version,") || begins("NO_OF_FRAMES\t") ||
+                         begins("PathFileType") || IsOfParts(lines)))
+    return std::nullopt;
+  const std::optional<TableLayout> layout = LayoutOf(text);
+  return !layout || layout->first_row > std::ssize(lines);
+}
+
+Result<std::optional<TableLayout>> LayoutOfTable(const std::string& table) {
+  std::ifstream file = OpenRegular(table);
+  std::string head(kHeadBytes, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
+  if (head.empty()) {
+    PREHEND_TRY(head, ReadTextFile(table));  // says what is wrong with it
+  }
+  if (!file || !IsOfParts(HeadOf(head))) return LayoutOf(head);
+  // The best part may begin anywhere.
+  file.seekg(0);
+  std::array<std::string, kViconParts.size()> heads;
+  std::array<int, kViconParts.size()> before{};
+  std::string line;
+  for (int i = 0; std::getline(file, line) && (heads[0].empty() || i < before[0] + kPartLines); ++i)
+    for (std::size_t k = 0; k < heads.size(); ++k) {
+      const bool begins = heads[k].empty() && BeginsPart(line, kViconParts[k]);
+      if (begins) before[k] = i;
+      if (begins || (!heads[k].empty() && i < before[k] + kPartLines)) heads[k] += line + "\n";
+    }
+  for (std::size_t k = 0; k < heads.size(); ++k)
+    if (std::optional<TableLayout> layout = LayoutOf(heads[k])) {
+      layout->first_row += before[k];
+      return layout;
+    }
+  return std::nullopt;
+}
+
 Result<MapFile> ReadMapOfTable(Result<YamlDocument> document, const std::string& table) {
-  return ReadMapOfHead(std::move(document), HeadOfFile(table));
+  PREHEND_TRY(std::optional<TableLayout> layout, LayoutOfTable(table));
+  return ReadMapWith(std::move(document), PoseFormat::kCsv, std::move(layout));
 }
 
 Result<MapFile> ReadMapOfHead(Result<YamlDocument> document, std::string_view head) {
@@ -420,13 +508,24 @@ Result<MapFile> ReadMapOfHead(Result<YamlDocument> document, std::string_view he
 
 Result<MapFile> ReadMapWith(Result<YamlDocument> document, PoseFormat format,
                             std::optional<TableLayout> layout) {
+  const YamlNode* const node = document ? document->root.Find("separator") : nullptr;
+  const std::optional<Where> separator = node ? std::optional(node->where) : std::nullopt;
   Result<MapFile> file = ReadImportMap(
       std::move(document), format, [&](Where where, ImportMap& map, DiagnosticList& errors) {
         if (layout && layout->yields && !map.columns.position.empty()) layout.reset();
-        if (layout) Complete(*layout, where, map, errors);
+        if (!layout) return;
+        if (separator && format == PoseFormat::kCsv && map.separator != layout->separator)
+          Contradict("separator", *separator, *layout, errors);
+        Complete(*layout, where, map, errors);
       });
   if (file && layout) file->layout = std::make_shared<const TableLayout>(std::move(*layout));
   return file;
+}
+
+std::string CountDoubt(const std::set<std::size_t>& said, std::size_t there) {
+  if (said.empty() || said == std::set{there}) return "";
+  return fmt::format("the head says {} frames, {} are there{}", fmt::join(said, " and "), there,
+                     *said.begin() > there ? ": is the file cut off?" : "");
 }
 
 std::string WithBody(const std::string& column, const std::string& body) {

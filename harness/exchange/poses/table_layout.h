@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,7 +26,9 @@ struct TableLayout {
   std::optional<Unit> unit;
   bool says_unit = true;  ///< else it is usual
   std::optional<TimeUnit> time_unit;
-  std::optional<double> rate_hz;
+  bool says_time_unit = true;         ///< likewise
+  std::optional<double> rate_hz;      ///< it is compared with the times, if there are some
+  std::optional<std::size_t> frames;  ///< that it should have
   std::optional<QuaternionOrder> quaternion_order;
   std::optional<std::string> euler_order;
   std::optional<bool> angles_in_degrees;
@@ -36,6 +39,9 @@ struct TableLayout {
 
 /// By the first lines of a file.
 std::optional<TableLayout> LayoutOf(std::string_view text);
+Result<std::optional<TableLayout>> LayoutOfTable(const std::string& table);
+/// Of a text that begins as a tracker's table with a long head: it has no row yet.
+std::optional<bool> HeadGoesOn(std::string_view text);
 
 /// With what a file says of itself, if it says anything; where the map says otherwise, that is an
 /// error.
@@ -45,6 +51,9 @@ Result<MapFile> ReadMapWith(Result<YamlDocument> document, PoseFormat format,
 Result<MapFile> ReadMapOfTable(Result<YamlDocument> document, const std::string& table);
 /// Likewise of a table that begins so.
 Result<MapFile> ReadMapOfHead(Result<YamlDocument> document, std::string_view head);
+
+/// What is wrong with the numbers of frames that a head says, or "".
+std::string CountDoubt(const std::set<std::size_t>& said, std::size_t there);
 
 /// Where the values of a body stand in a row.
 struct Seats {
