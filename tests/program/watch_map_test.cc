@@ -56,15 +56,19 @@ std::multiset<std::string> Events(const std::vector<Json>& events) {
 }
 
 void ExpectTheEventsOfImport(const std::string& bytes, const std::string& map,
-                             const std::string& file = "poses.csv") {
-  const Watched watched = Watch(bytes, map, {"--json"}, file);
+                             const std::string& file = "poses.csv",
+                             const std::vector<std::string>& grammar = {}) {
+  std::vector<std::string> more = {"--json"};
+  more.insert(more.end(), grammar.begin(), grammar.end());
+  const Watched watched = Watch(bytes, map, more, file);
   EXPECT_EQ(watched.said.exit_code, 0) << watched.said.err;
   EXPECT_EQ(watched.said.err, "");
   const std::string take = (watched.folder / "take.jsonl").string();
   const Said import = Prehend({"import", (watched.folder / file).string(), "--map",
                                (watched.folder / "map.yaml").string(), "-o", take});
   ASSERT_EQ(import.exit_code, 0) << import.err;
-  const Json all = Json::parse(Prehend({"episode", "resegment", take, "--json"}).out)["events"];
+  more.insert(more.begin(), {"episode", "resegment", take});
+  const Json all = Json::parse(Prehend(more).out)["events"];
   EXPECT_GT(all.size(), 8u);
   EXPECT_EQ(Events(Lines(watched.said.out)), Events({all.begin(), all.end()}));
 }
@@ -99,6 +103,106 @@ TEST(WatchMap, GivesTheEventsOfTheSameTableImported) {
       "unit: m\naxes: z_up\ntime_unit: frame\nrate_hz: 60\ncolumns: {time: frame, body: name, "
       "position: [x, 'y', z]}\n" +
           kEntities);
+}
+
+TEST(WatchMap, TablesOfTrackersAreKnownByTheirHeads) {
+  // As Motive writes them, with numbers for identifiers, and a first row in which nothing is seen.
+  std::string motive = MotiveCsv({});
+  for (std::size_t at; (at = motive.find("\"A1\"")) != std::string::npos;)
+    motive.replace(at, 4, "1");
+  ExpectTheEventsOfImport(motive, "axes: y_up\n" + kEntities);
+  const Watched late = Watch(MotiveCsv({.labels = true, .lost_from = 0, .lost_until = 3}),
+                             "axes: y_up\nlost: unknown\n" + kEntities);
+  EXPECT_EQ(late.said.exit_code, 0);
+  EXPECT_EQ(late.said.err,
+            "warning: 'hand' is not tracked in 1 gap: 0.000 s are bridged, in 0.050 s it is "
+            "unknown\n");
+  const std::string vicon =
+      "axes: z_up\n" + Replaced(Replaced(kEntities, "from: Cup", "from: \"s:Cup\""), "from: Hand",
+                                "from: \"s:Hand\"");
+  // Of Vicon's parts one is read, here as in a file.
+  ExpectTheEventsOfImport(
+      "Devices\n1000\n,,Plate,,\nFrame,Sub Frame,Fx,Fy,Fz\n,,N,N,N\n1,0,1,2,3\n1,1,1,2,3\n\n" +
+          ViconCsv("Objects", "Quaternion") +
+          "\nTrajectories\n60\n,,M,,\nFrame,,X,Y,Z\n1,0,1,2,3\n",
+      vicon);
+  ExpectTheEventsOfImport(QualisysTsv({}), "axes: z_up\n" + kEntities, "take.tsv");
+  ExpectTheEventsOfImport(Trc("Cup\t\t\tHand\t\t", "mm", 1000, "\n"), "axes: y_up\n" + kEntities,
+                          "take.trc");
+}
+
+const std::string kJoints =
+    "  drawer: {at_m: [0.6, 0.3, 0.4], class: Drawer, size_m: [0.4, 0.4, 0.15], joint: {from: v, "
+    "closed: 0, open: 0.4}}\n";
+
+double OpenAt(int i) { return std::clamp((i - 100) / 200.0, 0.0, 0.4); }
+
+/// The rows of a time in this order: c the cup, h the hand, l a lamp that the map does not mention,
+/// d how far the drawer is open.
+std::string InOrder(const std::string& order, const std::string& more = {}) {
+  std::string rows = "name,t,x,y,z,v\n";
+  for (int i = 0; i < kFrames; ++i) {
+    const std::string t = Text(i / kRate_hz);
+    for (const char of : order)
+      rows += of == 'c'   ? "Cup," + t + "," + Three(CupAt(i / kRate_hz), 1, ",") + ",\n"
+              : of == 'h' ? "Hand," + t + "," + Three(HandAt(i / kRate_hz), 1, ",") + ",\n"
+              : of == 'l' ? "Lamp," + t + ",1,1,1,\n"
+                          : "drawer," + t + ",,,," + Text(OpenAt(i)) + "\n";
+    if (i == 60) rows += more;
+  }
+  return rows;
+}
+
+const std::string kRowsMap =
+    "unit: m\naxes: z_up\ntime_unit: s\ncolumns: {body: name, time: t, position: [x, 'y', z]}\n" +
+    kEntities;
+
+TEST(WatchMap, WhateverStandsLastInAFrameIsOfThatFrame) {
+  const auto folder = FreshFolder("watch_grammar");
+  WriteFile(folder / "both.grammar", "grammar both\nuse pick_and_place_from_motion\nuse joints\n");
+  const std::vector<std::string> both = {"--grammar", (folder / "both.grammar").string()};
+  for (const char* order : {"chl", "lch", "clh"}) ExpectTheEventsOfImport(InOrder(order), kRowsMap);
+  for (const char* order : {"chd", "dch", "cdh", "chld", "chdl"})
+    ExpectTheEventsOfImport(InOrder(order), kRowsMap + kJoints, "poses.csv", both);
+  const Watched joint =
+      Watch(InOrder("chd"), kRowsMap + kJoints, {"--json", "--grammar", both.back()});
+  EXPECT_NE(joint.said.out.find("opening"), std::string::npos) << joint.said.out;
+  // The same as lines of JSON.
+  std::string lines, map = Replaced(Replaced(kRowsMap, "from: Cup", "position: \"[n=Cup].p\""),
+                                    "from: Hand", "position: \"[n=Hand].p\"");
+  map = "t: t\n" + map.erase(map.find("columns"), map.find("entities") - map.find("columns"));
+  for (int i = 0; i < kFrames; ++i) {
+    const std::string t = ", \"t\": " + Text(i / kRate_hz);
+    lines += "{\"n\": \"Cup\"" + t + ", \"p\": [" + Three(CupAt(i / kRate_hz), 1, ", ") + "]}\n" +
+             "{\"n\": \"Hand\"" + t + ", \"p\": [" + Three(HandAt(i / kRate_hz), 1, ", ") +
+             "]}\n{\"n\": \"drawer\"" + t + ", \"v\": " + Text(OpenAt(i)) + "}\n{\"n\": \"Lamp\"" +
+             t + ", \"p\": [1, 1, 1]}\n";
+  }
+  ExpectTheEventsOfImport(lines, map, "rows.jsonl");
+  ExpectTheEventsOfImport(lines, map + Replaced(kJoints, "from: v", "from: \"[n=drawer].v\""),
+                          "rows.jsonl", both);
+  // Each line with a member of its own.
+  std::string members;
+  for (int i = 0; i < kFrames; ++i)
+    members += "{\"t\": " + Text(i / kRate_hz) + ", \"cup\": [" +
+               Three(CupAt(i / kRate_hz), 1, ", ") + "]}\n{\"t\": " + Text(i / kRate_hz) +
+               ", \"hand\": [" + Three(HandAt(i / kRate_hz), 1, ", ") + "]}\n";
+  ExpectTheEventsOfImport(members,
+                          Replaced(Replaced(map, "\"[n=Cup].p\"", "cup"), "\"[n=Hand].p\"", "hand"),
+                          "rows.jsonl");
+  // What comes twice is as wrong as in a file.
+  for (const auto& [more, why] :
+       {std::pair<std::string, std::string>("Cup,1.000000,9,9,9,\n", "'Cup' has two poses at 1 s"),
+        {"drawer,1.000000,,,,0.3\n", "'v' has two values at 1 s"},
+        {"Cup,0.900000,9,9,9,\n", "times must increase: 0.9 s comes after 1 s"}}) {
+    const Watched twice =
+        Watch(InOrder("chd", more), kRowsMap + kJoints, {"--json", "--grammar", both.back()});
+    EXPECT_EQ(twice.said.exit_code, 2);
+    EXPECT_NE(twice.said.err.find(why), std::string::npos) << twice.said.err;
+    EXPECT_NE(twice.said.err.find("1 faulty line was skipped"), std::string::npos)
+        << twice.said.err;
+    EXPECT_EQ(twice.said.out, joint.said.out);
+  }
 }
 
 /// A frame as Leap and Quest log it.

@@ -20,14 +20,6 @@ bool IsJson(std::string_view line) {
   return first != std::string_view::npos && (line[first] == '{' || line[first] == '[');
 }
 
-/// "[name=Cup].position": a line has one body, or some.
-bool IsOfSomeLines(const Named<MappedEntity>& entity) {
-  if (!entity.value.from) return false;
-  std::string_view path = entity.value.from->value;
-  path.remove_prefix(std::min(path.find_first_not_of("$@"), path.size()));
-  return path.starts_with('[') && path.find('=') < path.find_first_of("'\"]");
-}
-
 /// Mostly numbers, or cells of what is not tracked.
 bool IsRow(std::string_view line) {
   if (line.starts_with('#')) return false;
@@ -48,6 +40,8 @@ bool IsRow(std::string_view line) {
 }  // namespace
 
 grammar::Diagnostics LivePoses::Take(const std::string& line, episode::EpisodeStream& stream) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";  // of the byte order
+  if (line_ == 0 && line.starts_with(kMark)) return Take(line.substr(kMark.size()), stream);
   has_frame_ = false;
   ++line_;
   if (lines_) {
@@ -59,8 +53,7 @@ grammar::Diagnostics LivePoses::Take(const std::string& line, episode::EpisodeSt
   }
   head_ += line + "\n";
   const auto count = static_cast<std::size_t>(line_);
-  const bool in_head = head_.starts_with("PathFileType") && count < 6;  // of TRC: numbers in it
-  if (!in_head && IsRow(line)) return Begin(line, stream);
+  if (!HeadGoesOn(head_).value_or(!IsRow(line))) return Begin(line, stream);
   if (count < kMostHeadLines && head_.size() < kMaxPoseFileBytes / 256) return {};
   return {{.file = name_,
            .place = {line_, 1},
@@ -77,8 +70,7 @@ grammar::Diagnostics LivePoses::Begin(const std::string& row, episode::EpisodeSt
   if (is_json) head_ = row + "\n";
   PREHEND_TRY(map_, is_json ? ReadImportMap(map_path_, PoseFormat::kJson)
                             : ReadMapOfHead(ReadYamlFile(map_path_), head_));
-  collects_ =
-      !map_->map.columns.body.empty() || std::ranges::any_of(map_->map.entities, IsOfSomeLines);
+  collects_ = is_json || !map_->map.columns.body.empty();
   DiagnosticList errors(map_->document);
   for (const Named<MappedEntity>& entity : map_->map.entities) {
     const auto& upright = entity.value.upright_at_s;
@@ -98,6 +90,7 @@ grammar::Diagnostics LivePoses::Begin(const std::string& row, episode::EpisodeSt
   samples_.resize(count);
   triggers_.resize(count);
   upright_.resize(count);
+  opened_.resize(OpeningsOf(map_->map).size());
   for (std::size_t i = 0; i < count; ++i) samples_[i].not_tracked = true;
   if (is_json)
     lines_.emplace(name_, *map_);
@@ -113,11 +106,36 @@ grammar::Diagnostics LivePoses::Begin(const std::string& row, episode::EpisodeSt
   return wrong;
 }
 
+/// What a row says that the frame at its time has already, or "": "'Cup' has two poses at 1 s".
+std::string LivePoses::Known(double row_s) const {
+  const bool is_given = frame_s_ != row_s;
+  for (const PoseBody& body : lines_->poses().bodies) {
+    if (body.samples.empty()) continue;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      const auto& from = map_->map.entities[i].value.from;
+      if (from && from->value == body.name && (is_given || !samples_[i].not_tracked))
+        return fmt::format("'{}' has two poses at {:.6g} s", body.name, row_s);
+    }
+  }
+  for (std::size_t i = 0; i < opened_.size(); ++i) {
+    const OpeningSeries& opening = lines_->poses().openings[i];
+    if (!opening.samples.empty() && (is_given || opened_[i]))
+      return fmt::format("'{}' has two values at {:.6g} s", opening.Of(map_->map).Names(), row_s);
+  }
+  return "";
+}
+
 /// A row with all bodies is a frame. Of rows with one each, those of a time are, and it is whole
-/// once it has all bodies, or another time has come.
+/// once it has all that the map asks for, or another time has come.
 grammar::Diagnostics LivePoses::TakeRow(episode::EpisodeStream& stream) {
   const ImportMap& map = map_->map;
   const double row_s = *lines_->row_s();
+  if (const std::string known = collects_ ? Known(row_s) : "-"; known.empty()) {
+    // Of what the map does not ask for; a frame that is given was whole without it.
+    if (frame_s_ != row_s && given_s_ && row_s <= *given_s_) return {};
+  } else if (collects_ && (frame_s_ == row_s || given_s_ == row_s)) {
+    return {{.file = name_, .place = {line_, 1}, .message = known}};
+  }
   grammar::Diagnostics wrong;
   if (frame_s_ && *frame_s_ != row_s) wrong = Emit(stream);
   frame_s_ = row_s;
@@ -130,7 +148,13 @@ grammar::Diagnostics LivePoses::TakeRow(episode::EpisodeStream& stream) {
     if (!body.samples.empty()) Add(i, body.samples.back());
     is_whole = is_whole && !samples_[i].not_tracked;
   }
-  AddOpenings();
+  for (std::size_t i = 0; i < poses.openings.size(); ++i) {
+    if (!poses.openings[i].samples.empty()) {
+      AddOpening(poses.openings[i]);
+      opened_[i] = true;
+    }
+    is_whole = is_whole && opened_[i];
+  }
   if (!collects_ || (is_whole && !has_frame_)) {
     const grammar::Diagnostics more = Emit(stream);
     wrong.insert(wrong.end(), more.begin(), more.end());
@@ -152,18 +176,15 @@ void LivePoses::Add(std::size_t entity, PoseSample sample) {
       .quat_wxyz = Located<Eigen::Vector4d>{{at.q.w(), at.q.x(), at.q.y(), at.q.z()}, {}}};
 }
 
-void LivePoses::AddOpenings() {
-  const ImportMap& map = map_->map;
-  for (const OpeningSeries& opening : lines_->poses().openings) {
-    if (opening.samples.empty()) continue;
-    const double open = opening.samples.back().open;
-    if (opening.is_grip) {
-      triggers_[opening.entity] = 1 - std::clamp(open, 0.0, 1.0);
-      continue;
-    }
-    samples_[opening.entity].joint_fraction = std::clamp(open, 0.0, 1.0);
-    samples_[opening.entity].joint_position = opening.Of(map).PositionAt(open, map);
+void LivePoses::AddOpening(const OpeningSeries& opening) {
+  const double open = opening.samples.back().open;
+  if (opening.is_grip) {
+    triggers_[opening.entity] = 1 - std::clamp(open, 0.0, 1.0);
+    return;
   }
+  const ImportMap& map = map_->map;
+  samples_[opening.entity].joint_fraction = std::clamp(open, 0.0, 1.0);
+  samples_[opening.entity].joint_position = opening.Of(map).PositionAt(open, map);
 }
 
 grammar::Diagnostics LivePoses::Emit(episode::EpisodeStream& stream) {
@@ -193,7 +214,9 @@ grammar::Diagnostics LivePoses::Emit(episode::EpisodeStream& stream) {
     }
   }
   const double frame_s = *frame_s_;
+  given_s_ = frame_s;
   frame_s_.reset();
+  opened_.assign(opened_.size(), false);
   if (stream.frame() && last_s_ && frame_s <= *last_s_)
     return {{.file = name_,
              .place = {line_, 1},

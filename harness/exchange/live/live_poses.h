@@ -33,8 +33,9 @@ class LivePoses {
  private:
   grammar::Diagnostics Begin(const std::string& row, episode::EpisodeStream& stream);
   grammar::Diagnostics TakeRow(episode::EpisodeStream& stream);
+  std::string Known(double row_s) const;
   void Add(std::size_t entity, PoseSample sample);
-  void AddOpenings();
+  void AddOpening(const OpeningSeries& opening);
   grammar::Diagnostics Emit(episode::EpisodeStream& stream);
 
   const std::string name_, map_path_;
@@ -43,10 +44,12 @@ class LivePoses {
   int waits_line_ = 0;  ///< of a frame that is left out unless the next one agrees with it
   std::optional<MapFile> map_;
   std::optional<PoseLines> lines_;
-  bool collects_ = false;                        ///< a frame is of several lines
+  bool collects_ = false;                        ///< a frame may be of several lines
   std::optional<double> last_s_;                 ///< of the frame before
+  std::optional<double> given_s_;                ///< likewise, also if that was left out
   std::optional<double> frame_s_;                ///< of the frame that is being collected
   std::vector<episode::SampleEntry> samples_;    ///< of it, by entity
+  std::vector<bool> opened_;                     ///< of it, which of the openings are known
   std::vector<std::optional<double>> triggers_;  ///< by entity: the last ones
   std::vector<std::optional<Eigen::Quaterniond>> upright_;  ///< by entity, in the file's axes
   bool has_frame_ = false;
