@@ -3,13 +3,16 @@
 import csv
 import hashlib
 import json
+import math
 import pathlib
 
 from .errors import EpisodeError, fail
 
 HERE = pathlib.Path(__file__).parent
 WEIGHED = ["layout", "outcome", "skill", "hand", "person", "body", "noise", "sensing_hz", "distractors", "retry", "style", "thing"]
-NUMBERS = ["pace", "step", "rest_s", "mass", "friction", "yaw_deg", "aim_m"]
+# Numbers, and the least of each that can be played.
+NUMBERS = {"pace": 0.1, "step": 0.1, "rest_s": 0, "mass": 0.5, "friction": 0, "yaw_deg": -360, "aim_m": -1}
+OF_PERSON = {"pace": 0.1, "pause_s": 0, "lift_m": 0, "start_m": -1, "height_m": 0.5}
 AXES = ["thing", "layout", "person", "style", "noise"]
 QUESTIONS = {"same": "as in training", "thing": "things never seen", "layout": "a room never seen", "person": "people never seen",
              "style": "grasps never seen", "noise": "sensors worse than those seen"}
@@ -81,24 +84,48 @@ def fits(style, thing):
             "parallel_narrow": 0.005 <= width <= 0.03 and stands}.get(style, False)
 
 
-def merged(own):
-    """The words of a recipe over those of the package's."""
+def _check_number(word, one, least, at):
+    """A distribution of which the least, or the mean, can be played."""
+    kind = next(iter(one), "") if isinstance(one, dict) and len(one) == 1 else ""
+    two = one[kind] if kind in ("uniform", "normal") else None
+    if not isinstance(two, list) or len(two) != 2 or any(isinstance(n, bool) or not isinstance(n, (int, float)) or not math.isfinite(n) for n in two):
+        fail(EpisodeError, f"{at}'{word}' of the recipe: found {one!r}, wanted {{uniform: [a, b]}} or {{normal: [mean, deviation]}}")
+    if kind == "uniform" and two[0] > two[1]:
+        fail(EpisodeError, f"{at}'{word}' of the recipe: found uniform {two}, wanted the least first", f"uniform: {two[::-1]}")
+    if kind == "normal" and two[1] < 0:
+        fail(EpisodeError, f"{at}'{word}' of the recipe: found the deviation {two[1]}, wanted 0 or more", f"normal: [{two[0]}, {-two[1]}]")
+    if two[0] < least:
+        fail(EpisodeError, f"{at}'{word}' of the recipe: found {one!r}, wanted {'times' if word == 'mass' else 'numbers'} from {least}",
+             f"{kind}: [{least}, {max(two[1], least) if kind == 'uniform' else two[1]}]")
+
+
+def merged(own, at=lambda word: ""):
+    """The words of a recipe over those of the package's; `at`: where one stands."""
     import yaml
     with open(HERE / "tabletop.yaml", encoding="utf-8") as file:
         recipe = yaml.safe_load(file)
     unknown = sorted(set(own) - set(recipe))
     if unknown:
-        fail(EpisodeError, f"the recipe has the unknown word '{unknown[0]}'", "known: " + ", ".join(recipe))
+        fail(EpisodeError, f"{at(unknown[0])}the recipe has the unknown word '{unknown[0]}'", "known: " + ", ".join(recipe))
     for word, value in own.items():
         recipe[word] = {**recipe[word], **value} if word in ("held_out", "of_person") else value
     for word in WEIGHED:
         weights = recipe[word]
         if not isinstance(weights, dict) or any(isinstance(w, bool) or not isinstance(w, (int, float)) or w < 0 for w in weights.values()):
-            fail(EpisodeError, f"'{word}' of the recipe: found {weights!r}, wanted weights, {{NAME: 3, ..}}", "docs/benchmark.md")
+            fail(EpisodeError, f"{at(word)}'{word}' of the recipe: found {weights!r}, wanted weights, {{NAME: 3, ..}}", "docs/benchmark.md")
         recipe[word] = {str(value): weight for value, weight in weights.items()}  # as JSON has them
-    for word in NUMBERS:
-        if len(recipe[word]) != 1 or next(iter(recipe[word])) not in ("uniform", "normal"):
-            fail(EpisodeError, f"'{word}' of the recipe: found {recipe[word]!r}, wanted {{uniform: [a, b]}} or {{normal: [mean, deviation]}}")
+    for word, least in NUMBERS.items():
+        _check_number(word, recipe[word], least, at(word))
+    for word, least in OF_PERSON.items():
+        _check_number(word, recipe["of_person"][word], least, at("of_person"))
+    if unknown := sorted(set(recipe["of_person"]) - set(OF_PERSON)):
+        fail(EpisodeError, f"{at('of_person')}'of_person' of the recipe has the unknown word '{unknown[0]}'", "known: " + ", ".join(OF_PERSON))
+    for word in ("dev", "test"):
+        if isinstance(recipe[word], bool) or not isinstance(recipe[word], (int, float)) or not 0 <= recipe[word] <= 1:
+            fail(EpisodeError, f"{at(word)}'{word}' of the recipe: found {recipe[word]!r}, wanted a share of the episodes, 0 to 1", f"{word}: 0.2")
+    if recipe["dev"] + recipe["test"] > 1:
+        fail(EpisodeError, f"{at('test') or at('dev')}'dev' and 'test' of the recipe: found {recipe['dev']} and {recipe['test']}, wanted shares of at most 1 together",
+             "dev: 0.2 and test: 0.1")
     return recipe
 
 
@@ -107,12 +134,14 @@ def read(path):
     import yaml
     try:
         with open(path, encoding="utf-8") as file:
-            own = yaml.safe_load(file)
+            text = file.read()
+        own = yaml.safe_load(text)
     except (OSError, yaml.YAMLError) as error:
         fail(EpisodeError, f"{path}: error: {error}")
     if not isinstance(own, dict) or own.get("recipe") != 1:
         fail(EpisodeError, f"{path}:1:1: error: found no 'recipe: 1', wanted a recipe", "docs/benchmark.md")
-    recipe = merged(own)
+    places = {key.value: f"{path}:{key.start_mark.line + 1}:{key.start_mark.column + 1}: error: " for key, _ in yaml.compose(text).value}
+    recipe = merged(own, lambda word: places.get(word, ""))
     return recipe, hashlib.sha256(json.dumps(recipe, sort_keys=True).encode()).hexdigest()
 
 

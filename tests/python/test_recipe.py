@@ -48,6 +48,11 @@ class Recipe(unittest.TestCase):
                 path.write_text(wrong, encoding="utf-8")
                 with self.assertRaises(EpisodeError, msg=wrong):
                     recipe.read(path)
+            for word, text in (("mass", "{uniform: [0.1, 0.1]}"), ("pace", "{uniform: [2, 1]}"), ("mass", "{normal: [0.8, -1]}"), ("friction", "[1]"),
+                               ("dev", "2"), ("test", "0.9"), ("of_person", "{lift_m: {uniform: [.nan, 1]}}"), ("of_person", "{heigth_m: {normal: [1, 1]}}")):
+                path.write_text(f"recipe: 1\n{word}: {text}\n", encoding="utf-8")
+                with self.assertRaisesRegex(EpisodeError, r"r\.yaml:2:1: error: .*\n  hint: |friction.*found \[1\]|lift_m.*found"):
+                    recipe.read(path)
 
     def test_numbers_are_those_of_every_machine(self):
         draw = recipe.Draw("a", 1)
