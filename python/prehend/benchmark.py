@@ -18,7 +18,7 @@ import numpy as np
 from . import ablation, robustness
 from .dataset import PARTS, label, sha256
 from .episodes import program
-from .errors import EpisodeError, fail, named
+from .errors import EpisodeError, amount, fail, named
 
 ACTIONS = ["reaching", "fixation", "grasping", "sliding", "picking_up", "transporting", "putting_down", "pick_and_place"]
 OVERLAPS = (0.10, 0.25, 0.50)
@@ -330,8 +330,8 @@ def main(arguments):
     parser.add_argument("--asks", help="of the test split only what asks this: same, thing, layout, person, style, noise")
     parser.add_argument("--labels", help="of the test split, if they are not in the set")
     parser.add_argument("--events", choices=["actions", "all"], default="actions", help="what hands do (default), or contacts and supports, too")
-    parser.add_argument("--robustness", type=int, default=0, metavar="N", help="also score N episodes with noise, at a lower rate, turned, mirrored")
-    parser.add_argument("--ablate", type=int, default=0, metavar="N", help="also judge N episodes by the first grammar without each of its modifiers")
+    parser.add_argument("--robustness", type=amount(int, 0), default=0, metavar="N", help="also score N episodes with noise, at a lower rate, turned, mirrored")
+    parser.add_argument("--ablate", type=amount(int, 0), default=0, metavar="N", help="also judge N episodes by the first grammar without each of its modifiers")
     parser.add_argument("--online", action="store_true", help="programs get a frame when they have answered the last one: how late are they?")
     parser.add_argument("-o", "--output", required=True, metavar="DIR", help="benchmark.md, .json, .png and cpu.json go there")
     options = parser.parse_args(arguments)

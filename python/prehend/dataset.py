@@ -15,7 +15,7 @@ import tempfile
 from . import recipe as recipes
 from . import scenes
 from .episodes import program
-from .errors import EpisodeError, cell, fail, named
+from .errors import EpisodeError, amount, cell, fail, named
 from .robustness import PLAYED
 
 BATCH, ATTEMPTS, ROLES = 100, 20, ("train", "dev", "test")
@@ -277,9 +277,9 @@ def main(arguments):
     commands = parser.add_subparsers(dest="command", required=True)
     one = commands.add_parser("make", help="draw and play the episodes of a recipe")
     one.add_argument("recipe")
-    one.add_argument("--episodes", type=int, required=True, metavar="N")
+    one.add_argument("--episodes", type=amount(int, 1), required=True, metavar="N")
     one.add_argument("--shard", type=shard_text, default=(1, 1), metavar="I/N", help="episodes I, I+N, ..: for many machines; then 'join'")
-    one.add_argument("--jobs", type=int, default=0, help="so many at a time; default: one per core")
+    one.add_argument("--jobs", type=amount(int, 0), default=0, help="so many at a time; default: one per core")
     one.add_argument("-o", "--output", required=True, metavar="DIR")
     one = commands.add_parser("join", help="one set of all shards")
     one.add_argument("shards", nargs="+", type=pathlib.Path)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What goes wrong: exceptions with a place and a remedy, and warnings of what is missing or looks wrong."""
+import argparse
 import io
+import math
 import numbers
 import os
 import re
@@ -70,6 +72,19 @@ def named(name):
     if not re.fullmatch(r"[A-Za-z0-9_][\w.-]*", str(name), re.ASCII):
         fail(EpisodeError, f"found the name {str(name)[:60]!r}, wanted letters, digits, '-', '_' and '.'", "ask who made the set")
     return str(name)
+
+
+def amount(kind, least, most=math.inf):
+    """The type of an argument: an int or a float in this range."""
+    def read(text):
+        try:
+            if least <= (value := kind(text)) <= most:
+                return value
+        except ValueError:
+            pass
+        wanted = f"from {least:g}" + (f" to {most:g}" if most < math.inf else "")
+        raise argparse.ArgumentTypeError(f"found {text!r}, wanted a {'whole ' if kind is int else ''}number {wanted}")
+    return read
 
 
 def cell(value):

@@ -15,7 +15,7 @@ import tempfile
 import numpy as np
 
 from . import _prehend, episodes, shrink
-from .errors import EpisodeError, Error, fail
+from .errors import EpisodeError, Error, amount, fail
 
 TIMES = (2, 4, 8, 16, 32, 64)
 FAR = 1000.0
@@ -193,10 +193,10 @@ def main(arguments):
     parser.add_argument("GRAMMAR", help="a name of the library or a file")
     parser.add_argument("--scenario", required=True, metavar="FILE", help="with the ranges of 'vary'")
     parser.add_argument("--against", default="", metavar="NAME|FILE", help="another grammar; default: the physical oracle")
-    parser.add_argument("--budget", type=int, default=100, metavar="N", help="plays; default: %(default)s")
-    parser.add_argument("--band-ms", type=float, default=50, metavar="MS", help="boundaries may be so far apart; default: %(default)s")
+    parser.add_argument("--budget", type=amount(int, 1), default=100, metavar="N", help="plays; default: %(default)s")
+    parser.add_argument("--band-ms", type=amount(float, 0), default=50, metavar="MS", help="boundaries may be so far apart; default: %(default)s")
     parser.add_argument("-o", "--output", metavar="FILE", help="the scenario that shows it, shrunk")
-    parser.add_argument("--shrink", type=int, default=shrink.LEAST_PLAYS, metavar="N", help="plays to shrink it; 0: as it is")
+    parser.add_argument("--shrink", type=amount(int, 0), default=shrink.LEAST_PLAYS, metavar="N", help="plays to shrink it; 0: as it is")
     asked = parser.parse_args(arguments)
     tree = shrink.read(asked.scenario)
     with tempfile.TemporaryDirectory(prefix="prehend_") as folder:

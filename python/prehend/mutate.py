@@ -13,7 +13,7 @@ import tempfile
 import numpy as np
 
 from . import _prehend, episodes, worlds
-from .errors import EpisodeError, fail
+from .errors import EpisodeError, amount, fail
 from .mutants import mutants, texts
 
 _work = None  # of a worker: what it keeps from one mutant to the next
@@ -189,9 +189,9 @@ def main(arguments):
     parser.add_argument("EPISODES", nargs="+", help="as prehend.open takes them: files, globs, scenarios")
     parser.add_argument("--grammar", required=True, metavar="NAME|FILE")
     parser.add_argument("--episode", default="", metavar="WHICH", help="only these of episode files")
-    parser.add_argument("--frames", type=int, default=100_000, metavar="N", help="random ones, that tell equivalent mutants")
-    parser.add_argument("--fail-below", type=float, default=0, metavar="PERCENT", help="exit code 1 if less are killed")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, metavar="N")
+    parser.add_argument("--frames", type=amount(int, 0), default=100_000, metavar="N", help="random ones, that tell equivalent mutants")
+    parser.add_argument("--fail-below", type=amount(float, 0, 100), default=0, metavar="PERCENT", help="exit code 1 if less are killed")
+    parser.add_argument("--jobs", type=amount(int, 1), default=os.cpu_count() or 1, metavar="N")
     parser.add_argument("--json", action="store_true")
     asked = parser.parse_args(arguments)
     with tempfile.TemporaryDirectory(prefix="prehend_") as folder:

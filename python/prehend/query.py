@@ -9,7 +9,7 @@ import re
 import sys
 
 from . import push
-from .errors import EpisodeError, cell, fail
+from .errors import EpisodeError, amount, cell, fail
 
 # How an event e lies to another event o, in Allen's words.
 RELATIONS = {
@@ -41,6 +41,17 @@ def _role(text):
     if not role or not value:
         raise argparse.ArgumentTypeError(f"found {text!r}, wanted ROLE=NAME, like object=milk or any=milk")
     return role, value
+
+
+def _check_roles(connection, options):
+    """A role that no event has is a mistake, and not 'nothing found'."""
+    with connection, connection.cursor() as cursor:
+        cursor.execute("SELECT DISTINCT role FROM prehend.event_role ORDER BY role")
+        known = [role for role, in cursor]
+    for option, asked in (("--role", options.role), ("--part-of", options.part_of)):
+        for role, _ in asked:
+            if known and role not in ("any", *known):
+                fail(EpisodeError, f"{option}: no event has a role {role!r}; there are: {', '.join(known)}")
 
 
 def _relation(text):
@@ -138,15 +149,20 @@ def main(arguments):
     parser.add_argument("--part-of", type=_role, action="append", default=[], metavar="ROLE=NAME")
     parser.add_argument("--lasts-s", type=_lasts, default=(None, None), metavar="S[..S]")
     for name, place in (("--from", "begins"), ("--to", "ends")):
-        parser.add_argument(name, type=float, dest=place, metavar="S")
+        parser.add_argument(name, type=amount(float, 0, 1e6), dest=place, metavar="S")
     parser.add_argument("--relation", type=_relation, action="append", default=[], metavar="'RELATION EVENT'")
     parser.add_argument("--episode", metavar="WHICH", help="a scenario (a name, skill/name or a glob), status=failed, outcome=NAME")
     parser.add_argument("--count-by", metavar="COLUMN,..")
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--csv", action="store_true")
     options = parser.parse_args(arguments)
+    for name in ("event", "episode", "count_by"):
+        if getattr(options, name) == "":
+            parser.error(f"--{name.replace('_', '-')}: the value is empty")
     with push.connected(options.url) as connection:
         found = answers(connection, options)
+        if not found:
+            _check_roles(connection, options)
     if options.count_by:
         _print(_columns(found, options.count_by.split(",")), options)
     else:

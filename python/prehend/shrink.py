@@ -2,6 +2,7 @@
 """python3 -m prehend shrink SCENARIO --keep CONDITION: the smallest scenario, or recording, that still shows it."""
 import argparse
 import copy
+import difflib
 import itertools
 import json
 import os
@@ -11,9 +12,10 @@ import sys
 import tempfile
 
 from . import _prehend, episodes
-from .errors import EpisodeError, fail
+from .errors import EpisodeError, amount, fail
 
 LEAST_PLAYS = 500
+KINDS = ("missing", "extra", "moved", "verdict", "not")
 HEAD = ("scenario", "shows", "expects", "grammar", "world", "entities", "actors", "script")
 KEPT_KEYS = {"class", "at_m", "box", "cylinder", "sphere", "hand", "scenario", "shows", "entities"}
 
@@ -86,12 +88,25 @@ class Condition:
 
     def __init__(self, text, grammar="", against=""):
         self.text, self.grammar, self.against = text, grammar, against
-        self.kind, _, rest = text.partition(" ")
+        self.kind, _, rest = text.strip().partition(" ")
+        if not text.strip() or not rest and self.kind in KINDS:
+            fail(EpisodeError, f"--keep: found {text!r}, wanted what has to stay", "--keep 'missing putting_down', 'verdict failed' or 'no sliding'")
         self.event = re.compile(re.escape(rest.replace(" ", "")) + (r"\(" if "(" not in rest else "$")) if rest else None
-        if self.kind not in ("missing", "extra", "moved", "verdict", "not"):
+        if self.kind not in KINDS:
             self.kind, rest = "claim", text
         self.claim = rest if self.kind in ("claim", "not") else None
         self.rest = rest
+
+    def check(self, grammars):
+        """A word that nothing can ever be is a mistake, and not 'it does not show'."""
+        known = ["passed", "failed", "pending"] if self.kind == "verdict" else []
+        if self.kind in ("missing", "extra", "moved"):
+            known = [one[0] for name in grammars if name for one in _prehend.Grammar(name, {}).events()]
+        word = self.rest.partition("(")[0].strip()
+        if known and word not in known:
+            near = difflib.get_close_matches(word, known, 1)
+            fail(EpisodeError, f"--keep: found {self.text!r}, and there is no {'verdict' if self.kind == 'verdict' else 'event'} {word!r}",
+                 f"did you mean {near[0]!r}?" if near else f"known: {', '.join(dict.fromkeys(known))}")
 
     def about(self, lines):
         """Whether one of these events, "event(a, b)", is the one."""
@@ -159,6 +174,7 @@ class Player:
             return False
         verdict = json.loads(done.stdout)["scenarios"][0]
         self.wrong = verdict["details"] or verdict["reason"] if verdict["exit_code"] in (2, 3) else ""
+        self.wrong = self.wrong.replace(self.folder.name + os.sep, "").strip()
         return not verdict["errors"] and self.condition.of_check(verdict)
 
 
@@ -327,7 +343,7 @@ def shrink(tree, player):
     """The scenario with fewer entities, steps, keys, seconds and decimals; the same result every time."""
     if not player.keeps(tree):
         fail(EpisodeError, player.wrong or "the scenario does not show what is to be kept",
-             "play it: prehend check SCENARIO; or name another --keep")
+             "" if player.wrong else "play it: prehend check SCENARIO; or name another --keep")
     before = None
     while before != tree:
         before = tree
@@ -371,6 +387,7 @@ def shrink_recording(lines, keeps):
 def _recording(asked, condition):
     if condition.kind not in ("missing", "extra", "moved") or not condition.against or not condition.grammar:
         fail(EpisodeError, "a recording shows a difference of two grammars", "--keep 'missing EVENT' --grammar G --against OTHER")
+    condition.check([asked.grammar, asked.against])
     with tempfile.TemporaryDirectory(prefix="prehend_") as folder:
         file = os.path.join(folder, "part.jsonl")
 
@@ -388,6 +405,7 @@ def _recording(asked, condition):
 
 def _scenario(asked, condition):
     tree = read(asked.SCENARIO)
+    condition.check([asked.grammar or str(tree.get("grammar", "pick_and_place")), asked.against])
     player = Player(condition, os.path.dirname(os.path.abspath(asked.SCENARIO)), asked.budget)
     before = copy.deepcopy(tree)
     tree["scenario"] = os.path.splitext(os.path.basename(asked.output or asked.SCENARIO))[0]
@@ -406,7 +424,7 @@ def main(arguments):
                         "'moved grasping', 'verdict failed', 'no sliding', 'not one grasping'")
     parser.add_argument("--grammar", default="", metavar="NAME|FILE")
     parser.add_argument("--against", default="", metavar="NAME|FILE", help="another grammar; default: the physical oracle")
-    parser.add_argument("--budget", type=int, default=LEAST_PLAYS, metavar="N", help="plays at most; default: %(default)s")
+    parser.add_argument("--budget", type=amount(int, 1), default=LEAST_PLAYS, metavar="N", help="plays at most; default: %(default)s")
     parser.add_argument("-o", "--output", metavar="FILE", help="default: print it")
     asked = parser.parse_args(arguments)
     if asked.against and not asked.grammar and not asked.SCENARIO.endswith(".jsonl"):

@@ -123,6 +123,10 @@ def rights(server, asked, file):
     expect(python("push", file, "sqlite:///x"), 2, "wanted postgresql://")
     expect(python("push", file + ".none", server.url()), 2, "no such file")
     expect(python("query", server.url(), "--relation", "durng x"), 2, "wanted 'RELATION EVENT'")
+    for words, said in ((("--event", ""), "--event: the value is empty"), (("--count-by", ""), "--count-by: the value is empty"),
+                        (("--from", "-1"), "found '-1', wanted a number from 0"), (("--role", "foo=milk"), "no event has a role 'foo'; there are: "),
+                        (("--part-of", "foo=x"), "no event has a role 'foo'")):
+        expect(python("query", server.url(), *words), 2, said)
 
 
 def not_the_same(server, file):

@@ -12,7 +12,7 @@ import unittest
 
 import prehend
 from prehend import __main__ as command
-from prehend import _prehend, falsify, mutants, mutate, shrink, worlds
+from prehend import EpisodeError, _prehend, falsify, mutants, mutate, shrink, worlds
 import takes
 
 SHELF = """grammar shelf
@@ -155,6 +155,13 @@ class Workbench(takes.Folder, unittest.TestCase):
         fixed = shrink.elsewhere(tree, lambda now: now["script"])
         self.assertEqual(fixed["entities"]["cup"], {"fixed": True, "at_m": [0.3, 0, 0.7 + 0.2]})
         self.assertEqual(shrink.elsewhere(tree, lambda now: False), tree)
+
+    def test_what_can_never_be_is_no_condition(self):
+        for text, said in (("", "wanted what has to stay"), ("not ", "wanted what has to stay"), ("missing slidng", "did you mean 'sliding'"),
+                           ("verdict good", "there is no verdict 'good'")):
+            with self.assertRaisesRegex(EpisodeError, said):
+                shrink.Condition(text).check(["pick_and_place"])
+        shrink.Condition("missing sliding(right_hand, milk)").check(["pick_and_place"])
 
     def test_a_scenario_shrinks_to_what_the_condition_needs(self):
         tree = shrink.read(takes.ROOT / "scenarios/put_down/slow_put_down.yaml")
