@@ -7,6 +7,7 @@ State and action are position, quaternion (w first) and grip of the right hand o
 not there; the action is the next state. The task is the skill in words. Needs duckdb or pyarrow for Parquet. Not loaded by LeRobot here.
 """
 import csv
+import importlib.util
 import json
 import pathlib
 import sys
@@ -68,4 +69,11 @@ def main(source, target):
     print(f"{target}: {len(lines)} episodes, {total} frames")
 
 
-main(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]))
+if len(sys.argv) != 3:
+    sys.exit("usage: lerobot_of_set.py SET OUT")
+if not any(map(importlib.util.find_spec, ("pyarrow", "fastparquet", "duckdb"))):
+    sys.exit("lerobot_of_set.py: Parquet needs the Python module 'duckdb' or 'pyarrow': pip install duckdb")
+try:
+    main(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]))
+except OSError as error:
+    sys.exit(f"lerobot_of_set.py: {error.filename}: {error.strerror.lower()}")

@@ -73,4 +73,11 @@ def main():
         duckdb.sql(f"copy (from read_json('{out}.json')) to '{out}.parquet' (format parquet)")
 
 
-main()
+if not 3 <= len(sys.argv) <= 4:
+    sys.exit("usage: subtasks_for_sarm.py tasks.csv OUT [sparse.csv]")
+try:
+    main()
+except KeyError as error:
+    sys.exit(f"subtasks_for_sarm.py: the table has no column {error}; wanted what 'prehend episode label --to csv -o tasks.csv' writes")
+except OSError as error:
+    sys.exit(f"subtasks_for_sarm.py: {error.filename}: {error.strerror.lower()}")
