@@ -26,6 +26,19 @@ TEST(Causes, ThreeSeededFaultsAreNamedWithTheirValues) {
   };
   ASSERT_EQ(check({}).exit_code, 0);
 
+  // Of a recorded run nothing changed but what the command line says.
+  const char* const hop = "slide/hop_divides_a_slide";
+  const std::string kept = (root / "hop.episodes").string();
+  ASSERT_EQ(Prehend({"run", hop, "--record", kept}, {"PREHEND_HOME=" + root.string()}).exit_code,
+            0);
+  const auto causes = [&](const std::string& what) {
+    const std::string out = check({what, "--set", "slide_distance=50cm"}).out;
+    EXPECT_NE(out.find("Changed since: --set slide_distance=50cm\n"), std::string::npos) << out;
+    return out.substr(std::min(out.find("1 cause:"), out.size()),
+                      out.find("     look:") - out.find("1 cause:"));
+  };
+  EXPECT_EQ(causes(kept), causes(hop));
+
   const auto change = [&](const char* file, const char* from, const char* to) {
     WriteFile(root / file, Replaced(ReadFile(root / file), from, to));
   };

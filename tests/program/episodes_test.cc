@@ -142,6 +142,20 @@ TEST(Episodes, TrialsAreRecordedEachByItself) {
       nlohmann::json::parse(Prehend({"run", scenario, "--trial", "2", "--json"}).out);
   EXPECT_NE(Prehend({"episode", "list", file}).out.find(trial["state_hash"].get<std::string>()),
             std::string::npos);
+
+  // Other values have other boundaries.
+  const Said judged = Prehend({"check", file, "--no-pictures"});
+  EXPECT_EQ(judged.exit_code, 0) << judged.out;
+  EXPECT_NE(judged.out.find("a trial: judged by its claims and its outcome, not by the golden of "
+                            "what was not varied\n"),
+            std::string::npos)
+      << judged.out;
+  EXPECT_TRUE(judged.out.ends_with("3 passed, 0 failed\n")) << judged.out;
+  const Said page = Prehend({"report", file, "-o", file + ".html"});
+  EXPECT_TRUE(page.out.ends_with(": 3 episodes, 3 passed, 0 failed, 0 without golden\n"))
+      << page.out;
+  EXPECT_EQ(Prehend({"run", scenario, "--trials", "3", "--shard", "4/5"}).out,
+            "no trial is of this part\n");
 }
 
 TEST(Episodes, BadUseIsExplained) {

@@ -208,6 +208,8 @@ void PrintText(const std::vector<suite::ScenarioVerdict>& verdicts, const TextOp
                                    : fmt::format("{} new scenarios have no golden", acceptable),
                                acceptable == 1 ? "it" : "them", acceptable == 1 ? "it" : "each");
   }
+  if (tally.pending > acceptable)
+    context.out << fmt::format("{} pending: no golden\n", tally.pending - acceptable);
   if (tally.unchanged > 0)
     context.out << fmt::format("{} unchanged since the last pass: not run again\n",
                                tally.unchanged);

@@ -73,6 +73,21 @@ const RunResult& Episode::Played() {
   return played_.emplace(RunScenario(loaded_.scenario, loaded_.program, {.record = true}));
 }
 
+bool Episode::IsTrial() const {
+  const YamlNode* vary = loaded_.document.root.Find("vary");
+  const Result<TaskFiles> task = vary ? Task() : TaskFiles();
+  if (!task || !vary) return false;
+  const auto is_set = [&](const YamlNode& field) {
+    return std::ranges::any_of(task->run.settings, [&](const std::string& setting) {
+      return setting.starts_with(field.text + "=");
+    });
+  };
+  return std::ranges::all_of(vary->children, [&](const YamlNode& variation) {
+    const YamlNode* fields = variation.Find("fields");
+    return fields && std::ranges::all_of(fields->children, is_set);
+  });
+}
+
 Result<SegmentedRecording> Episode::SegmentRecorded() {
   return SegmentRecording(*recording_, loaded_.program, name_.file);
 }

@@ -64,6 +64,12 @@ class Episode {
   Result<grammar::Timeline> Segment(const std::shared_ptr<const grammar::Program>& program);
   /// One per tick of physics.
   Result<std::vector<physics::Snapshot>> Snapshots();
+  /// Of a recorded run, what it was made from.
+  Result<TaskFiles> Task() const {
+    return name_.origin == Origin::kRecordedRun ? file_->TaskOf(row_) : TaskFiles();
+  }
+  /// Whether it was recorded with other values of all that its scenario varies: it has no golden.
+  bool IsTrial() const;
   /// The first tick after the episode; an error if it did not come to a good end.
   Result<grammar::Tick> EndTick();
 

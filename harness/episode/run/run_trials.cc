@@ -257,6 +257,7 @@ nlohmann::ordered_json TrialJson(const TrialReport& report) {
 
 std::string TrialTable(const TrialReport& report, const std::string& command) {
   const std::vector<TrialResult>& results = report.results;
+  if (results.empty()) return "no trial is of this part\n";
   const std::vector<std::string> names = AllOutcomes(report);
   std::string table;
   for (const std::string& name : names) {

@@ -129,6 +129,8 @@ tl::expected<grammar::Timeline, std::string> TruthOf(const SweepRequest& request
     Result<grammar::Timeline> recorded = episode.Recorded();
     if (!recorded) return tl::unexpected(recorded.error().front().message);
     truth = std::move(*recorded);
+  } else if (episode.IsTrial()) {
+    return tl::unexpected(std::string("a trial has no golden"));
   } else {
     const auto golden = truth::GoldenFiles(request.root).ReadGoldenOf(name.scenario);
     if (!golden || !*golden) return tl::unexpected(std::string("it has no golden"));

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -114,6 +115,18 @@ std::string FirstCause(const StateTrace& before, const DifferingRun& now) {
   return "the grammar or the golden. Everything moves as in the last passing run";
 }
 
+/// The same frames of a recorded run, with some parameters as they were.
+std::optional<CheckedRun> RecordedWithout(const CheckRequest& request, const CheckedRun& checked,
+                                          const std::vector<std::string>& settings) {
+  Result<episode::Episode> episode =
+      episode::OpenEpisode(request.episode, {request.changes.grammar, settings}, request.root);
+  if (!episode) return std::nullopt;
+  Result<episode::RunResult> result = episode->Run(/*frames=*/false);
+  if (!result) return std::nullopt;
+  return CheckedRun{
+      .id = checked.id, .loaded = episode->loaded(), .result = std::move(*result), .explain = {}};
+}
+
 /// The same motion, with some parameters and clauses as they were.
 std::optional<CheckedRun> RunWithout(const CheckRequest& request, const CheckedRun& checked,
                                      const FileHashes& inputs,
@@ -124,7 +137,7 @@ std::optional<CheckedRun> RunWithout(const CheckRequest& request, const CheckedR
       return RelativeTo(request.root, one.first) == change->file;
     });
     if (change->of == SettingChange::Of::kClause) {
-      if (path == inputs.end()) return std::nullopt;
+      if (path == inputs.end() || !request.IsPlayed()) return std::nullopt;
       std::string& text = changed.instead[path->first];
       if (text.empty()) text = ReadTextFile(path->first).value_or("");
       text = WithClause(text, change->name, change->before);
@@ -134,6 +147,7 @@ std::optional<CheckedRun> RunWithout(const CheckRequest& request, const CheckedR
       changed.settings.push_back(name + change->before);
     }
   }
+  if (!request.IsPlayed()) return RecordedWithout(request, checked, changed.settings);
   Result<episode::LoadedRun> loaded = episode::LoadRun(changed, request.root);
   if (!loaded) return std::nullopt;
   CheckedRun run{.id = checked.id, .loaded = std::move(*loaded), .result = {}, .explain = {}};
@@ -143,17 +157,25 @@ std::optional<CheckedRun> RunWithout(const CheckRequest& request, const CheckedR
 }
 
 bool CanUndo(const CheckRequest& request, const CheckedRun& checked) {
-  return request.IsPlayed() && !checked.result.recording.empty();
+  return !checked.result.recording.empty() &&
+         (request.IsPlayed() || request.episode.origin == episode::Origin::kRecordedRun);
 }
 
 DifferingRun NowOf(const CheckRequest& request, const CheckedRun& checked,
                    const ScenarioVerdict& verdict, bool traced) {
   const episode::RunResult& run = checked.result;
+  FileHashes inputs = verdict.inputs;
+  std::vector<std::string> options =
+      OptionsOf({checked.task.run.grammar, checked.task.run.settings});
+  std::ranges::copy(OptionsOf(request.changes), std::back_inserter(options));
+  if (!checked.task.files.empty()) inputs.erase(request.episode.file);
+  for (const auto& [path, text] : checked.task.files)
+    inputs[(std::filesystem::path(request.root) / path).string()] = ContentHash(text);
   return {.program = request.program,
           .build = BuildText(),
-          .inputs = verdict.inputs,
+          .inputs = std::move(inputs),
           .settings = verdict.settings,
-          .options = OptionsOf(request.changes),
+          .options = std::move(options),
           .other_grammar = !request.changes.grammar.empty(),
           .trace = traced ? TraceOf(checked.loaded.scenario.scene, run.recording) : StateTrace(),
           .ticks_per_second = static_cast<double>(run.timeline.ticks_per_second)};

@@ -94,10 +94,23 @@ Findings Claims(CheckedEpisode& checked) {
   return ClaimFindings(checked.verdict.claims);
 }
 
+/// Other values have other boundaries.
+Findings JudgeTrial(CheckedEpisode& checked) {
+  checked.verdict.details =
+      "a trial: judged by its claims and its outcome, not by the golden of what was not varied\n" +
+      GroundTruthText(checked.golden->truth);
+  const auto& outcomes = checked.run.loaded.scenario.outcomes;
+  const std::string& outcome = checked.run.result.outcome;
+  if (outcomes.empty() || outcome == outcomes.front().name) return {};
+  return {{ExitCode::kDiffers,
+           fmt::format("its outcome is '{}', wanted '{}'", outcome, outcomes.front().name), ""}};
+}
+
 Findings GoldenAndTruth(CheckedEpisode& checked) {
   const CheckRequest& request = checked.request;
   std::optional<truth::Golden> golden;
-  if (request.in_project) {
+  const bool is_trial = checked.run.is_trial;
+  if (request.in_project && !is_trial) {
     auto read = truth::GoldenFiles(request.root).ReadGoldenOf(request.id);
     if (!read) return {{ExitCode::kBadInput, "the golden cannot be read", "", read.error()}};
     golden = std::move(*read);
@@ -109,6 +122,7 @@ Findings GoldenAndTruth(CheckedEpisode& checked) {
   verdict.has_golden = checked.golden->has_golden;
   verdict.comparison = checked.golden->comparison;
   verdict.drawings = checked.run.result.drawings;
+  if (is_trial) return JudgeTrial(checked);
   Findings findings = JudgeGolden(*checked.golden, checked.run, verdict.cause);
   if (!golden || !request.IsAsItsFileSays()) return findings;
   const std::string file = truth::GoldenFiles(request.root).GoldenPath(request.id).string();
@@ -185,7 +199,7 @@ Findings HeardAndGolden(CheckedEpisode& checked) {
   if (checked.recording)
     golden = truth::ReadGoldenFile(GoldenOf(request.episode, scenario, request.root),
                                    checked.recording->name);
-  else if (request.in_project)
+  else if (request.in_project && !checked.run.is_trial)
     golden = truth::GoldenFiles(request.root).ReadGoldenOf(request.id);
   if (!golden) return {{ExitCode::kBadInput, "the golden cannot be read", "", golden.error()}};
   verdict.has_golden = golden->has_value();
@@ -204,7 +218,9 @@ Findings HeardAndGolden(CheckedEpisode& checked) {
   verdict.comparison = truth::Compare(
       covered, heard.timeline,
       checked.recording ? ToleranceOf(*checked.recording) : scenario::DefaultTolerance(scenario));
-  if (!verdict.has_golden) return {{ExitCode::kPending, "no golden yet", ""}};
+  if (!verdict.has_golden)
+    return {
+        {ExitCode::kPending, checked.run.is_trial ? "a trial has no golden" : "no golden yet", ""}};
   if (verdict.comparison->Agrees()) return {};
   return {DifferenceFinding(*verdict.comparison, "")};
 }
@@ -396,7 +412,8 @@ ScenarioVerdict VerdictOn(CheckedEpisode checked) {
   const episode::RunResult& run = checked.run.result;
   ScenarioVerdict& verdict = checked.verdict;
   if (!checked.recording) {
-    verdict.settings = SettingsOf(checked.run.loaded, request.Run(), verdict.inputs, request.root);
+    verdict.settings = SettingsOf(checked.run.loaded, request.Run(), verdict.inputs, request.root,
+                                  checked.run.task.files);
     verdict.shows = checked.run.loaded.scenario.shows;
     verdict.notes = episode::NoteLines(checked.run.loaded.scenario, run);
     verdict.state_hash = episode::HashText(run.state_hash);
@@ -465,6 +482,10 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   Result<episode::Episode> episode = opener.Open(request.episode, request.changes, &files);
   if (!episode) return Unreadable(request, BlankVerdict(request, nullptr, files), episode.error());
   CheckedEpisode checked = ToBeChecked(request, episode->loaded(), files);
+  Result<episode::TaskFiles> task = episode->Task();
+  if (!task) return Unreadable(request, std::move(checked.verdict), task.error());
+  checked.run.task = std::move(*task);
+  checked.run.is_trial = episode->IsTrial();
   grammar::Diagnostics unread;
   if (request.IsPlayed() && !request.listen)
     Play(files, checked);

@@ -52,10 +52,16 @@ void AddValues(const YamlNode& node, const std::string& path, Values& values) {
 }
 
 /// Of files that are no grammar, and no YAML, there is nothing to say.
-void AddFile(const std::string& path, Values& values) {
-  if (path.ends_with(".grammar")) values.merge(GrammarSettings(ReadTextFile(path).value_or("")));
+void AddText(const std::string& path, const Result<std::string>& text, Values& values) {
+  if (!text) return;
+  if (path.ends_with(".grammar")) values.merge(GrammarSettings(*text));
   if (!path.ends_with(".yaml")) return;
-  if (const auto document = ReadYamlFile(path)) AddValues(document->root, "", values);
+  if (const auto document = ParseYaml(path, *text)) AddValues(document->root, "", values);
+}
+
+void AddFile(const std::string& path, Values& values) {
+  if (path.ends_with(".grammar") || path.ends_with(".yaml"))
+    AddText(path, ReadTextFile(path), values);
 }
 
 /// What stands after the '=' of a declaration in these lines, or "".
@@ -204,7 +210,8 @@ std::map<std::string, std::string> GrammarSettings(std::string_view text) {
 }
 
 Settings SettingsOf(const episode::LoadedRun& loaded, const episode::RunRequest& request,
-                    const FileHashes& inputs, const std::string& root) {
+                    const FileHashes& inputs, const std::string& root,
+                    const std::map<std::string, std::string>& kept) {
   Settings settings;
   std::map<std::string, std::string> texts;
   for (const grammar::ProgramParam& param : grammar::Describe(*loaded.program).params)
@@ -216,6 +223,7 @@ Settings SettingsOf(const episode::LoadedRun& loaded, const episode::RunRequest&
     else if (hash != kNoFile)
       AddFile(path, settings[RelativeTo(root, path)]);
   }
+  for (const auto& [path, text] : kept) AddText(path, text, settings[path]);
   std::erase_if(settings, [](const auto& file) { return file.second.empty(); });
   for (const std::string& setting : request.settings) {
     const std::size_t equals = setting.find('=');

@@ -23,6 +23,7 @@
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_scenario.h"
 #include "harness/episode/run/segment_recording.h"
+#include "harness/episode/run/task_files.h"
 #include "harness/episode/sense/episode_file.h"
 #include "harness/scenario/scenario/scenario.h"
 #include "harness/show/pictures/pictures.h"
@@ -56,6 +57,9 @@ struct CheckedRun {
   episode::LoadedRun loaded;
   episode::RunResult result;
   std::string explain;  ///< the command that asks about its events
+  /// Of one that was recorded, what it was made from: its files are read from copies.
+  episode::TaskFiles task = {};
+  bool is_trial = false;  ///< of other values of all that its scenario varies
 };
 
 /// Said of a scenario that contradicts its claims.
