@@ -221,7 +221,7 @@ def _play(name):
     return [Episode(one, folder) for one in _prehend.open([file], "")]
 
 
-def open(path: Union[Path, Sequence[Path]], which: str = "") -> Episodes:  # pylint: disable=redefined-builtin
+def open(path: Union[Path, Sequence[Path]], which: Union[str, int] = "") -> Episodes:  # pylint: disable=redefined-builtin
     """Opens episodes of any kind.
 
     Parameters
@@ -230,7 +230,7 @@ def open(path: Union[Path, Sequence[Path]], which: str = "") -> Episodes:  # pyl
         Episode files (``suite.episodes``), recordings (``take1.jsonl``), globs of such
         (``takes/*.jsonl``), and scenarios by name (``"milk_carton_wrap"``), which the program
         plays first: for these it has to be installed.
-    which : str
+    which : str or int
         Of episode files: a number, a scenario ("name", "skill/name") or a glob of these.
 
     Returns
@@ -246,6 +246,9 @@ def open(path: Union[Path, Sequence[Path]], which: str = "") -> Episodes:  # pyl
     --------
     >>> prehend.open("suite.episodes")["slide/hop_divides_a_slide"].events
     """
+    if not isinstance(which, (str, int)) or isinstance(which, bool):
+        fail(EpisodeError, f"which: found {which!r}, wanted a number, a scenario or a glob", "which='slide/*'")
+    which = str(which)
     paths = [path] if isinstance(path, (str, os.PathLike)) or not hasattr(path, "__iter__") else list(path)
     episodes = []
     for one in paths:

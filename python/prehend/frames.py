@@ -114,7 +114,7 @@ def _times(t, rate_hz, frames):
     if usual > 2:
         unit, _, parts = next(one for one in _PARTS if usual < one[1])
         wrong(f"frames are {usual:g} s apart", f"t is in seconds; divide {unit} by {parts}")
-    if abs(t[0]) > 1e6:
+    if t[0] < -1e-6 or t[0] > 1e6:
         wrong(f"t begins at {t[0]:g} s", "count from the beginning: t - t[0]")
     per_second = _FINE
     rate = round(1 / usual)
@@ -159,6 +159,8 @@ def _of_table(table):
             if cell is None or isinstance(cell, float):
                 continue
             cell = cell.split() if isinstance(cell, str) else cell
+            if not isinstance(cell, (dict, list, tuple, set, np.ndarray)):
+                wrong(f"column 'touches': found {cell!r} in a row of '{name}', wanted the entities that it touches", "'cup table', or ['cup', 'table']")
             for other in cell:
                 if (other, name) in touches and not np.isnan(touches[other, name][at]):
                     continue  # the row of the other one says so, too
