@@ -114,8 +114,8 @@ class Grammar:
         found : Events, Episode, or list of them
             Of one episode each. Of an episode: what this grammar recognises.
         truth : path, pandas.DataFrame, or list of them
-            Labels: .csv, .eaf or .TextGrid; or a table with begin_s, end_s and either event and
-            roles, or label ("grasping(right_hand, cup)", or the event alone).
+            Labels: .csv, .eaf or .TextGrid; or a table with begin_s, end_s, event or label
+            ("grasping(right_hand, cup)", or the event alone), and columns of roles.
         map : path, optional
             What labels of a file mean (docs/labels.md).
         collar_s : float, optional
@@ -242,21 +242,18 @@ def _file_of(labels, grammar):
              "wanted begin_s, end_s and label; or event and a column for each role")
     if {"event", "label"} <= set(labels.columns) or labels.columns.has_duplicates:
         fail(Error, f"truth: the table has the columns {list(labels.columns)}: which are meant?", "'label', or 'event' and roles, each once")
-    roles = dict(zip(grammar.events.index, grammar.events["roles"]))
+    named = [role for role in dict.fromkeys(role for each in grammar.events["roles"] for role in each) if role in labels.columns]
     with tempfile.NamedTemporaryFile("w", suffix=".csv", encoding="utf-8", newline="") as file:
         rows = csv.writer(file)
-        own = ["begin_s", "end_s", "event", "label", "decided_s", "open_end", *{one for each in roles.values() for one in each}]
-        others = [name for name in labels.columns if name not in own]  # they may say whose rows these are
-        rows.writerow([*others, "begin_s", "end_s", "label"])
+        own = ["begin_s", "end_s", "event", "label", "decided_s", "open_end", *named]
+        others = [name for name in labels.columns if name not in own and (  # they may say whose rows these are
+            not isinstance(labels, events.Events) or name in ("scenario", "episode"))]
+        rows.writerow([*others, "begin_s", "end_s", "label", *named])
         for at, row in zip(labels.index, labels.to_dict("records")):
             label = row.get("label", row.get("event"))
-            label = "" if pd.isna(label) else label
-            named = [row.get(role) for role in roles.get(label, [])] if "label" not in row else []
-            if named and all(isinstance(one, str) and one for one in named):
-                label = f"{label}({', '.join(named)})"
             times = [row[name] if isinstance(row[name], str) else repr(number(row[name], f"truth, row {at}: {name}"))
                      for name in ("begin_s", "end_s")]
-            rows.writerow([*(" ".join(str(row[name]).split()) for name in others), *times, label])
+            rows.writerow([*(" ".join(str(row[name]).split()) for name in others), *times, *("" if pd.isna(one) else one for one in (label, *(row[role] for role in named)))])
         file.flush()
         yield file.name
 
@@ -287,7 +284,8 @@ class Monitor:
 
     def __init__(self, grammar: Grammar, entities: dict, ticks_per_second: int = 10_000, bridge_s: float = 0.1,
                  name: str = "live"):
-        number(ticks_per_second, "ticks_per_second", 1, wanted="a whole number", kind=FrameError)
+        if number(ticks_per_second, "ticks_per_second", 1, wanted="a whole number", kind=FrameError) % 1:
+            wrong(f"ticks_per_second: found {ticks_per_second!r}, wanted a whole number")
         line, self._standing = frames.first_line(entities, ticks_per_second, name, grammar.name, bridge_s=bridge_s)
         self._monitor, self._entities, self._line, self._grammar = _prehend.Monitor(grammar._compiled, line), entities, line, grammar
         self._per_second, self._last, self._t, self._end = int(ticks_per_second), None, None, None

@@ -76,6 +76,17 @@ class Study(takes.Folder, unittest.TestCase):
         self.assertTrue(scores["begin_s_median"].isna().all(), "nothing is matched")
         self.assertEqual((total["further_psds"], total["further_intersection_f1"]), (0, 0))
 
+    def test_columns_of_roles_are_roles(self):
+        rows = {"begin_s": [1.5], "end_s": [4.1], "label": ["grasping"], "hand": ["right_hand"], "object": ["milk"]}
+        right = self.grammar.score(self.milk, pd.DataFrame(rows)).loc["grasping"]
+        self.assertEqual((right["found"], right["f1_50"]), (1, 1.0))
+        with self.assertRaisesRegex(prehend.Error, "truth, row 0: error: the recording has no entity 'mlik'\n.*\n.*\n  hint: did you mean 'milk'"):
+            self.grammar.score(self.milk, pd.DataFrame({**rows, "object": ["mlik"]}))
+        with self.assertWarnsRegex(prehend.DoubtfulLabels, "columns that are not read: tool"):
+            self.grammar.score(self.milk, pd.DataFrame({**rows, "tool": ["knife"]}))
+        with self.assertWarnsRegex(prehend.DoubtfulLabels, "the column 'objct' is not read"):
+            self.grammar.score(self.milk, pd.DataFrame({**rows, "objct": ["knife"]}))
+
     def test_labels_of_a_moment_are_counted(self):
         found = self.grammar.segment(self.milk)
         moments = pd.DataFrame({"begin_s": [2.0, 4.9], "end_s": [2.0, 4.9], "label": ["grasping"] * 2})

@@ -194,7 +194,7 @@ suite::ReportHeader CompareSides(const measure::LabelScores& scores, const std::
     }
     header.tables.push_back(ConfusionOf(first, opinion.name, comparisons));
   }
-  header.scores = measure::LabelScoresText(scores, collar_s, true);
+  header.scores = measure::LabelScoresText(scores, true);
   std::ranges::stable_sort(verdicts, std::greater{}, Differing);
   return header;
 }
@@ -276,7 +276,7 @@ ExitCode ReportSides(std::vector<episode::Take> takes, const std::string& page,
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   const suite::Tally tally = suite::Count(verdicts);
   if (options.Has("--json")) {
-    nlohmann::ordered_json json = measure::ScoresJson(scores->of_grammars, collar_s);
+    nlohmann::ordered_json json = measure::ScoresJson(scores->of_grammars);
     json["page"] = page;
     json["takes"] = verdicts.size();
     json["agree"] = tally.passed;

@@ -15,17 +15,16 @@
 namespace prehend::cli {
 namespace {
 
-ExitCode PrintScores(const Result<measure::LabelScores>& scores, double collar_s,
-                     const std::string& warnings, const ParsedOptions& options,
-                     const CommandContext& context) {
+ExitCode PrintScores(const Result<measure::LabelScores>& scores, const std::string& warnings,
+                     const ParsedOptions& options, const CommandContext& context) {
   context.err << warnings;
   if (!scores) return Complain(context, scores.error());
   context.err << scores->failures;
   const ExitCode code = scores->failures.empty() ? ExitCode::kAgrees : CodeOf(scores->failures);
   if (options.Has("--json")) {
     nlohmann::ordered_json json =
-        measure::ScoresJson(scores->of_grammars, collar_s, options.Has("--verbose"));
-    json["by_hand"] = measure::ScoresJson(scores->by_hand, collar_s);
+        measure::ScoresJson(scores->of_grammars, options.Has("--verbose"));
+    json["by_hand"] = measure::ScoresJson(scores->by_hand);
     const exchange::Counted& counted = scores->counted;
     json["counted"] = {{"takes", counted.takes},
                        {"labels", counted.labels},
@@ -36,10 +35,11 @@ ExitCode PrintScores(const Result<measure::LabelScores>& scores, double collar_s
                         {{"of_other_takes", counted.OfOtherTakes()},
                          {"ignored", counted.ignored},
                          {"without_text", counted.without_text},
+                         {"columns", counted.unread},
                          {"backward", counted.Backward()}}}};
     context.out << json.dump(2) << "\n";
   } else {
-    context.out << measure::LabelScoresText(*scores, collar_s, options.Has("--verbose"));
+    context.out << measure::LabelScoresText(*scores, options.Has("--verbose"));
   }
   return code;
 }
@@ -82,7 +82,7 @@ ExitCode RunLabelFiles(const ParsedOptions& options, const CommandContext& conte
                                                 .collar_s = collar_s,
                                                 .is_collar_asked = options.Has("--collar-ms")},
                                                warnings);
-  return PrintScores(scores, collar_s, warnings, options, context);
+  return PrintScores(scores, warnings, options, context);
 }
 
 /// `score TAKES --truth LABELS`: against what people marked.
@@ -112,7 +112,7 @@ ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) 
                                             .collar_s = collar_s,
                                             .is_collar_asked = options.Has("--collar-ms")},
                                            warnings);
-  return PrintScores(scores, collar_s, warnings, options, context);
+  return PrintScores(scores, warnings, options, context);
 }
 
 /// `score`: against what physically happened, in scenarios.
@@ -146,12 +146,11 @@ ExitCode RunScenarios(const measure::Asking& asking, const measure::ToScore& to_
   }
   if (scores.of_grammars.empty()) return worst;  // no table of nothing
   if (options.Has("--json")) {
-    nlohmann::ordered_json json =
-        measure::ScoresJson(scores.of_grammars, collar_s, options.Has("--verbose"));
+    nlohmann::ordered_json json = measure::ScoresJson(scores.of_grammars, options.Has("--verbose"));
     json["witnesses"] = measure::EvaluatorsJson(scores.of_grammars, scores.evaluators);
     context.out << json.dump(2) << "\n";
   } else {
-    context.out << measure::ScenarioScoresText(scores, collar_s, options.Has("--verbose"));
+    context.out << measure::ScenarioScoresText(scores, options.Has("--verbose"));
   }
   return worst;
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <ranges>
 #include <set>
 #include <string>
 #include <utility>
@@ -141,6 +142,7 @@ Counted& Counted::operator+=(const Counted& more) {
   merged += more.merged;
   without_text += more.without_text;
   for (const auto& [label, count] : more.ignored) ignored[label] += count;
+  unread.insert(more.unread.begin(), more.unread.end());
   backward.insert(more.backward.begin(), more.backward.end());
   of_other_takes.insert(more.of_other_takes.begin(), more.of_other_takes.end());
   return *this;
@@ -169,8 +171,10 @@ std::string Counted::Text() const {
       CountedText(OfOtherTakes(), "row", "of other takes"),
       CountedText(ignored, "label", "without a meaning"),
       without_text > 0 ? grammar::CountOf(without_text, "label") + " without text" : "",
-      Backward() > 0 ? grammar::CountOf(Backward(), "label") + " with an end before the begin"
-                     : ""};
+      Backward() > 0 ? grammar::CountOf(Backward(), "label") + " with an end before the begin" : "",
+      unread.empty() ? ""
+                     : fmt::format("{} not read ({})", grammar::CountOf(unread.size(), "column"),
+                                   fmt::join(std::views::keys(unread), ", "))};
   std::erase(left_out, "");
   return text + "\n" +
          (left_out.empty() ? "" : fmt::format("left out: {}\n", fmt::join(left_out, "; ")));

@@ -97,20 +97,6 @@ struct Meant {
   std::string problem = {}, hint = {};
 };
 
-Meant WithoutMap(const Label& label, const std::string& text, const Events& events) {
-  Meant meant;
-  meant.event = EventIn(text, events, meant.problem);
-  if (!meant.event) {
-    meant.hint = "say what your labels mean in a file: --map labels.yaml";
-  } else if (meant.event->roles.empty()) {
-    const EventSignature& event = *FindEvent(events, meant.event->event);
-    for (const grammar::Role& role : label.roles)
-      if (std::ranges::count(event.roles, role.name) > 0) meant.event->roles.push_back(role);
-    PutInOrder(event, meant.event->roles);
-  }
-  return meant;
-}
-
 /// What the map says of a label or a tier, which `kind` names; null if it has it not.
 const Meaning* Find(const std::map<std::string, Meaning>& known, const std::string& name,
                     const std::string& kind, Meant& meant) {
@@ -126,7 +112,7 @@ const Meaning* Find(const std::map<std::string, Meaning>& known, const std::stri
 
 /// The roles of the label's meaning, then those of its columns, then those of its tier. False if a
 /// column has an entity that is left out.
-bool AddRoles(const Label& label, const LabelMap& map, const Meaning* tier,
+bool AddRoles(const Label& label, const LabelMap* map, const Meaning* tier,
               const EventSignature& event, Meant& meant) {
   std::vector<grammar::Role>& roles = meant.event->roles;
   const auto add = [&](const grammar::Role& role) {
@@ -135,11 +121,12 @@ bool AddRoles(const Label& label, const LabelMap& map, const Meaning* tier,
     if (has_it && !given) roles.push_back(role);
   };
   for (grammar::Role role : label.roles) {
-    const auto entity = map.entities.find(role.value);
+    if (tier && role.value == label.tier) continue;  // one column is both, and the map explains it
     meant.in_map.erase(role.value);
-    if (entity != map.entities.end()) {
-      role.value = entity->second.value;
-      meant.in_map[role.value] = entity->second.where;
+    if (map && map->entities.contains(role.value)) {
+      const Located<std::string>& entity = map->entities.at(role.value);
+      role.value = entity.value;
+      meant.in_map[role.value] = entity.where;
     }
     if (role.value.empty()) return false;
     add(role);
@@ -147,6 +134,17 @@ bool AddRoles(const Label& label, const LabelMap& map, const Meaning* tier,
   if (tier) std::ranges::for_each(tier->roles, add);
   PutInOrder(event, roles);
   return true;
+}
+
+Meant WithoutMap(const Label& label, const std::string& text, const Events& events) {
+  Meant meant;
+  meant.event = EventIn(text, events, meant.problem);
+  if (!meant.event) {
+    meant.hint = "say what your labels mean in a file: --map labels.yaml";
+  } else {
+    AddRoles(label, nullptr, nullptr, *FindEvent(events, meant.event->event), meant);
+  }
+  return meant;
 }
 
 Meant ByMap(const Label& label, const std::string& text, const LabelMap& map, const Events& events,
@@ -162,7 +160,7 @@ Meant ByMap(const Label& label, const std::string& text, const LabelMap& map, co
   meant.event = {.event = meaning->event, .roles = meaning->roles};
   meant.in_map = meaning->entities;
   if (tier) meant.in_map.insert(tier->entities.begin(), tier->entities.end());
-  if (!AddRoles(label, map, tier, *FindEvent(events, meaning->event), meant)) meant.event.reset();
+  if (!AddRoles(label, &map, tier, *FindEvent(events, meaning->event), meant)) meant.event.reset();
   return meant;
 }
 
@@ -181,13 +179,14 @@ void Compare(const std::string& event, const std::vector<grammar::Role>& roles,
 /// Of all events of a map the roles that each label of it would have, in any tier, with those
 /// columns and child tiers `filled` that are so of some label; with all, if there are no labels.
 ComparedRoles Possible(const LabelMap& map, const Events& events,
-                       const std::set<std::string>& filled) {
+                       const std::vector<LabelFile>& files, const std::set<std::string>& filled) {
   std::vector<Label> places(map.tiers.empty() ? 1 : 0);
   for (const auto& [name, tier] : map.tiers)
     if (!tier.ignored && tier.role.empty()) places.push_back({.tier = name});
   ComparedRoles possible;
   for (Label& label : places) {
-    for (const grammar::Role& column : map.csv.roles) label.roles.push_back({column.name, "?"});
+    for (const LabelFile& file : files)
+      for (const std::string& column : file.roles) label.roles.push_back({column, "?"});
     for (const auto& [_, tier] : map.tiers)
       if (!tier.role.empty() && tier.of == label.tier) label.roles.push_back({tier.role, "?"});
     std::erase_if(label.roles, [&](const grammar::Role& role) {
@@ -213,6 +212,21 @@ std::string WithoutText(const LabelFile& file) {
                           first.begin_s, first.end_s));
   warning.is_warning = true;
   return grammar::Format(warning);
+}
+
+/// Warnings of columns whose names are nearly those of roles, or "".
+std::string Misspelt(const LabelFile& file, const Events& events) {
+  const std::set<std::string> roles = RolesOf(events);
+  std::string warnings;
+  for (const std::string& column : file.unread) {
+    const std::string near = grammar::NearestName(column, {roles.begin(), roles.end()});
+    if (near.empty() || near == column) continue;
+    grammar::Diagnostic warning = file.At(
+        {1, 1}, fmt::format("the column '{}' is not read", column), "did you mean '" + near + "'?");
+    warning.is_warning = true;
+    warnings += grammar::Format(warning);
+  }
+  return warnings;
 }
 
 const Meaning* TierOf(const Label& label, const LabelMap* map) {
@@ -306,7 +320,7 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
       Meant meant = map && (in_map || side == Side::kTruth) ? ByMap(label, text, *map, events, side)
                                                             : WithoutMap(label, text, events);
       if (tier && meant.event &&
-          !AddRoles(label, *map, tier, *FindEvent(events, meant.event->event), meant))
+          !AddRoles(label, map, tier, *FindEvent(events, meant.event->event), meant))
         meant.event.reset();
       const bool is_problem = !meant.problem.empty();
       if (is_problem && problems.size() < kMostComplaints &&
@@ -328,8 +342,10 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
   }
   for (const LabelFile& file : files) {
     if (file.backward > 0) reading.counted_.backward[file.file] = file.backward;
-    reading.warnings_ += grammar::Format(file.warnings) + WithoutText(file);
+    reading.warnings_ +=
+        grammar::Format(file.warnings) + WithoutText(file) + Misspelt(file, events);
     reading.counted_.without_text += file.empty.size();
+    for (const std::string& column : file.unread) ++reading.counted_.unread[column];
   }
   // What labels could name: without one of them, what is recognised of it is too much. Where no
   // label is and no map, that is all.
@@ -338,7 +354,7 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
     for (const auto& of_take : reading.events_)
       for (const LabelledEvent& one : of_take)
         for (const grammar::Role& role : one.event.roles) filled.insert(role.name);
-    ComparedRoles possible = Possible(*map, events, filled);
+    ComparedRoles possible = Possible(*map, events, files, filled);
     reading.compared_.merge(possible);
   } else if (reading.compared_.empty()) {
     for (const EventSignature& event : events) reading.compared_[event.name] = event.roles;

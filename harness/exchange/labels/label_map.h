@@ -56,6 +56,9 @@ std::optional<double> OffsetOf(const LabelMap& map, const std::vector<std::strin
 /// Its video, or ""; the clock is that of its labels.
 std::string VideoOf(const LabelMap& map, const std::vector<std::string>& names);
 
+/// Every role of an event.
+std::set<std::string> RolesOf(const std::vector<grammar::EventSignature>& events);
+
 /// Errors have their places. Events and roles must be those of `events`.
 Result<LabelMap> ReadLabelMap(const std::string& path,
                               const std::vector<grammar::EventSignature>& events);
@@ -78,6 +81,7 @@ struct Counted {
   std::size_t merged = 0;  ///< by how many they are more than what became of them
   std::map<std::string, std::size_t> ignored;  ///< by the text of the label
   std::size_t without_text = 0;
+  std::map<std::string, std::size_t> unread;  ///< columns that mean nothing, and in how many files
   std::map<std::string, std::size_t> backward;  ///< by file
   /// By file and take.
   std::map<std::string, std::map<std::string, std::size_t>> of_other_takes;

@@ -108,27 +108,32 @@ struct CsvColumns {
   std::optional<std::size_t> label, tier, kind;
   std::vector<std::pair<std::string, std::size_t>> roles;
   std::vector<std::size_t> keys;
+  std::map<std::string, std::vector<std::string>> called;  ///< so are begin, end, duration, label
 
   void Take(std::string_view word, std::size_t seat) {
     const std::string whole = Plain(word);
     const std::string_view plain = WithoutUnit(whole);
     const TimeColumn column = TimeColumnAt(seat, word);
     // Of seconds and frames the seconds.
-    const auto take = [&](std::optional<TimeColumn>& into) {
-      if (!into || into->in_frames || !column.in_frames) into = column;
+    const auto take = [&](std::optional<TimeColumn>& into, const char* what) {
+      if (into && into->in_frames && !column.in_frames) called[what].clear();
+      if (!into || into->in_frames || !column.in_frames) {
+        into = column;
+        called[what].emplace_back(word);
+      }
     };
     if (IsOneOf(plain, {"begin", "start", "onset"}))
-      take(begin);
+      take(begin, "begin");
     else if (IsOneOf(plain, {"end", "stop", "offset"}))
-      take(end);
+      take(end, "end");
     else if (plain == "duration")
-      take(duration);
+      take(duration, "duration");
     else if (whole == "frame")
       frame = column;
     else if (IsOneOf(plain, {"label", "event", "annotation", "text", "action", "activity", "verb",
                              "value", "behavior", "behaviour", "trial_type"}))
-      label = seat;
-    else if (IsOneOf(plain, {"tier", "hand", "track", "layer"}))
+      label = seat, called["label"].emplace_back(word);
+    else if (!tier && IsOneOf(plain, {"tier", "hand", "track", "layer"}))
       tier = seat;
   }
 
@@ -144,6 +149,7 @@ struct CsvColumns {
       used = {&frame};
     else
       used = {&begin, end ? &end : &duration};
+    if (used.size() == 2 && end && duration) used.push_back(&duration);
     return used;
   }
   /// Of all columns that are read.
@@ -182,6 +188,9 @@ class ColumnFinder {
     if (!missing_.empty())
       return Problem(fmt::format("{}; the map wants a column '{}'", found_, missing_),
                      grammar::DidYouMean(missing_, words_));
+    if (columns_.end && columns_.duration && columns_.duration->in_frames)
+      columns_.duration.reset();
+    if (columns_.HasTimes() && columns_.label) FindRoles();
     return Checked();
   }
 
@@ -206,6 +215,17 @@ class ColumnFinder {
   void Named(std::optional<std::size_t>& column, const std::string& name) {
     if (!name.empty()) column = SeatOf(name);
   }
+  /// Columns that are called as roles are; a tier is one, too, unless the map says that it is one.
+  void FindRoles() {
+    std::set<std::string> wanted = how_.role_names;
+    for (const grammar::Role& role : how_.roles) wanted.erase(role.name);
+    const std::vector<std::size_t> read = columns_.Seats();
+    for (std::size_t seat = 0; seat < words_.size(); ++seat) {
+      const bool is_tier = columns_.tier == seat && how_.tier.empty();
+      if ((is_tier || std::ranges::count(read, seat) == 0) && wanted.erase(Plain(words_[seat])))
+        columns_.roles.emplace_back(Plain(words_[seat]), seat);
+    }
+  }
 
   Result<CsvColumns> Checked() {
     if (!how_.end.empty() && std::string(WithoutUnit(Plain(how_.end))) == "duration")
@@ -227,6 +247,15 @@ class ColumnFinder {
     for (const std::size_t seat : columns_.Seats())
       if (std::ranges::count(words_, words_[seat]) > 1)
         return Problem(fmt::format("{}: two columns are called '{}'", found_, words_[seat]), "");
+    for (const auto& [what, name, is_read] :
+         {std::tuple("begin", how_.begin, columns_.begin.has_value()),
+          std::tuple("end", how_.end, columns_.end.has_value()),
+          std::tuple("duration", how_.duration, columns_.duration.has_value()),
+          std::tuple("label", how_.label, true)})
+      if (const auto& words = columns_.called[what]; words.size() > 1 && name.empty() && is_read)
+        return Problem(
+            fmt::format("{}: which of '{}' is the {}?", found_, fmt::join(words, "' and '"), what),
+            fmt::format("in the map: columns: {{{}: {}}}", what, words.front()));
     for (std::optional<TimeColumn>* column : columns_.Times()) {
       if (how_.unit_s > 0 || how_.in_frames)
         **column = {.seat = (*column)->seat, .unit_s = how_.unit_s, .in_frames = how_.in_frames};
@@ -289,9 +318,15 @@ class RowTaker {
       file_.rate_hz = 1 / columns_.frame->unit_s;
     }
     const std::vector<std::size_t> read = columns_.Seats();
-    for (std::size_t seat = 0; seat < words_.size(); ++seat)
-      if (cells_of_[seat].size() > 1 && std::ranges::count(read, seat) == 0)
+    for (const auto& [role, _] : columns_.roles) file_.roles.insert(role);
+    for (std::size_t seat = 0; seat < words_.size(); ++seat) {
+      if (std::ranges::count(read, seat) > 0) continue;
+      if (cells_of_[seat].size() > 1)
         file_.several.push_back(words_[seat]);
+      else if (!SeemsToTellTakes(words_[seat]) &&
+               !IsOneOf(words_[seat], {"uuid", "scenario", "decided_s", "open_end"}))
+        file_.unread.push_back(words_[seat]);
+    }
     return std::move(problems_);
   }
 
@@ -343,6 +378,20 @@ class RowTaker {
     if (!from_s || !to_s) return;
     label.begin_s = *from_s;
     label.end_s = columns_.end ? *to_s : *from_s + *to_s;
+    constexpr double kRounding_s = 0.1;
+    const CsvCell* lasts =
+        columns_.end && columns_.duration ? &cells[columns_.duration->seat] : nullptr;
+    const std::optional<TimeCell> length = lasts ? TimeIn(lasts->text) : std::nullopt;
+    const double length_s =
+        length ? length->number * (length->is_clock ? 1 : columns_.duration->unit_s) : 0;
+    if (length && std::abs(label.end_s - label.begin_s - length_s) > kRounding_s)
+      return Complain(
+          lasts->column,
+          fmt::format("{}: found {:g} s, and the end is {:g} s after the begin; which is right? In "
+                      "the map: columns: {{end: {}}}",
+                      words_[columns_.duration->seat], length_s, label.end_s - label.begin_s,
+                      words_[columns_.end->seat]),
+          line_);
     Keep(std::move(label));
   }
 

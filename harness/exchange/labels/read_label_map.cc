@@ -23,6 +23,7 @@ class MapReader {
 
   Diagnostics Read() {
     const YamlNode& root = map_.document.root;
+    map_.csv.role_names = RolesOf(events_);
     const bool is_of_poses = root.Find("import") != nullptr;
     if (root.kind != YamlNode::Kind::kMapping || is_of_poses) {
       errors_.Add(
@@ -128,17 +129,9 @@ class MapReader {
     map_.csv.in_frames = node.text == "frame";
   }
 
-  /// Every role of an event.
-  std::set<std::string> Roles() const {
-    std::set<std::string> known;
-    for (const EventSignature& event : events_)
-      known.insert(event.roles.begin(), event.roles.end());
-    return known;
-  }
-
   void ReadColumns(const YamlNode& columns) {
     if (!IsMapping(columns)) return;
-    std::set<std::string> known = Roles();
+    std::set<std::string> known = RolesOf(events_);
     for (const YamlNode& node : columns.children) {
       if (node.kind != YamlNode::Kind::kScalar || node.text.empty()) {
         errors_.Add(node.where,
@@ -146,7 +139,8 @@ class MapReader {
       } else if (const auto column = columns_.find(node.key); column != columns_.end()) {
         map_.csv.*column->second = node.text;
       } else if (known.contains(node.key)) {
-        map_.csv.roles.push_back({node.key, node.text});
+        map_.csv.role_names.erase(node.key);
+        if (!SaysIgnore(node)) map_.csv.roles.push_back({node.key, node.text});
       } else {
         for (const auto& [name, _] : columns_) known.insert(name);
         errors_.AddUnknownName(node.key_where,
@@ -201,7 +195,7 @@ class MapReader {
 
   void ReadTiers(const YamlNode& tiers) {
     if (!IsMapping(tiers)) return;
-    const std::set<std::string> known = Roles();
+    const std::set<std::string> known = RolesOf(events_);
     for (const YamlNode& node : tiers.children) {
       Meaning& tier = map_.tiers[node.key];
       tier.where = node.key_where;
@@ -294,6 +288,12 @@ class MapReader {
 };
 
 }  // namespace
+
+std::set<std::string> RolesOf(const std::vector<EventSignature>& events) {
+  std::set<std::string> known;
+  for (const EventSignature& event : events) known.insert(event.roles.begin(), event.roles.end());
+  return known;
+}
 
 Result<LabelMap> ReadLabelMap(const std::string& path, const std::vector<EventSignature>& events) {
   PREHEND_TRY(YamlDocument document, ReadYamlFile(path));

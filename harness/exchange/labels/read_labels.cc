@@ -530,6 +530,8 @@ grammar::Diagnostics ReadJsonLabels(LabelFile& file, double ticks_per_second) {
       wanted = R"({"recogniser": 1, ..})";
     } else if (line.contains("event")) {
       problem = ReadEventLine(line, ticks_per_second, label);
+      if (problem.empty() && label.decided_s.value_or(label.end_s) < label.end_s)
+        problem = "decided_tick: it is before end_tick, and nobody knows the end before it came";
     } else if (line.contains("error")) {
       problem = "the recogniser failed: " + line["error"].dump();
     } else if (line.contains("recording") || line.contains("tick")) {

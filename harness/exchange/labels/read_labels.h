@@ -40,6 +40,7 @@ struct CsvReading {
   std::string frame;                 ///< of tables with a row for each frame
   std::string take;                  ///< whose take a row is of; "ignore": no column says that
   std::vector<grammar::Role> roles;  ///< a role, and the name of its column
+  std::set<std::string> role_names;  ///< of the others: columns called so hold them
   std::vector<std::string> keys;     ///< names of columns that rows are told apart by
   double unit_s = 0;   ///< of the times; 0: as the names of the columns say, otherwise seconds
   double rate_hz = 0;  ///< of the video, for times in frames; 0: not known
@@ -63,6 +64,8 @@ struct LabelFile {
   grammar::Diagnostics warnings;
   /// Of a table: columns that seem to say whose take a row is of, and hold several values.
   std::vector<std::string> several;
+  std::set<std::string> roles;      ///< of a table: those that have a column
+  std::vector<std::string> unread;  ///< of a table: columns that mean nothing
 
   grammar::Diagnostic At(grammar::Place place, std::string message, std::string hint = {}) const;
 };

@@ -63,7 +63,8 @@ struct WantedRows {
 /// Reads the labels of takes, each file once. With `clock`, what somebody found in them.
 class TruthReader {
  public:
-  TruthReader(const std::vector<episode::Take>& takes, const LabelMap* map, Backward backward,
+  TruthReader(const std::vector<episode::Take>& takes, const LabelMap* map,
+              const std::vector<grammar::EventSignature>& events, Backward backward,
               std::function<TakeClock()> clock = {})
       : takes_(takes),
         map_(map),
@@ -71,6 +72,7 @@ class TruthReader {
         backward_(backward),
         clock_(std::move(clock)) {
     if (clock_) csv_ = {.rate_hz = csv_.rate_hz};  // the columns of the map are those of labels
+    if (clock_ || !map) csv_.role_names = RolesOf(events);
     if (csv_.take == "ignore") says_nothing_of_takes_ = true;
     if (says_nothing_of_takes_) csv_.take.clear();
   }
@@ -83,8 +85,6 @@ class TruthReader {
       const std::vector<std::string> head = HeadOfTable(given);
       if (std::ranges::count(head, "episode") > 0) csv_.take = "episode";
     }
-    for (const grammar::EventSignature& event : events)
-      roles_.insert(event.roles.begin(), event.roles.end());
     return Read({given}, events, std::move(only));
   }
 
@@ -186,10 +186,7 @@ class TruthReader {
     if (!is_new) return known->second;
     CsvReading csv = csv_;
     csv.keys = {keys_[path].begin(), keys_[path].end()};
-    if (clock_ && IsTable(path)) {
-      for (const std::string& word : HeadOfTable(path))
-        if (roles_.contains(word)) csv.roles.push_back({word, word});
-    } else if (clock_) {
+    if (clock_ && !IsTable(path)) {
       const TakeClock clock = clock_();
       csv.ticks_per_second = clock.ticks_per_second;
       csv.frames_s = clock.frames_s;
@@ -303,7 +300,6 @@ class TruthReader {
   const Backward backward_;
   const std::function<TakeClock()> clock_;
   const char* const what_ = clock_ ? "events" : "labels";
-  std::set<std::string> roles_;  ///< of what was found: tables may have columns of them
   bool says_nothing_of_takes_ = false;
   std::map<std::string, std::set<std::string>> keys_;  ///< by path: columns that tell rows apart
   std::map<std::string, std::optional<std::size_t>> index_;  ///< by path: in `files_`
@@ -451,7 +447,8 @@ Result<LabelReading> ReadTruths(const std::vector<episode::Take>& takes,
                                 std::vector<std::size_t> only) {
   const std::vector<grammar::EventSignature> events = grammar::EventSignatures(program);
   PREHEND_TRY(const auto read, MapOf(takes, map, events));
-  return TruthReader(takes, read ? &*read : nullptr, backward).Read(given, events, std::move(only));
+  return TruthReader(takes, read ? &*read : nullptr, events, backward)
+      .Read(given, events, std::move(only));
 }
 
 Result<LabelReading> NothingMarked(std::size_t takes, const grammar::Program& program) {
@@ -468,7 +465,7 @@ Result<LabelReading> ReadFound(const std::vector<episode::Take>& takes, std::siz
   // What the takes know of labels, and by which clock, is not so of what was found.
   std::vector<episode::Take> bare = episode::TakesOf(episode::EpisodesOf(takes));
   for (episode::Take& one : bare) one.offset_s = 0;
-  return TruthReader(bare, read ? &*read : nullptr, Backward::kRefuse, clock)
+  return TruthReader(bare, read ? &*read : nullptr, events, Backward::kRefuse, clock)
       .ReadFound(given, events, {take});
 }
 

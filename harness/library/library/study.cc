@@ -2,10 +2,12 @@
 #include "harness/library/library/study.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <ranges>
 #include <set>
 #include <thread>
 
@@ -165,10 +167,14 @@ Warned ScoreJson(const Grammar& grammar, const std::vector<Compared>& episodes,
         Unwrap(found.Found(0, table.entities, table.ticks_per_second, one.end, truths.compared())),
         take, truths, collar, scored);
   }
+  const auto unread = std::views::keys(truths.counted().unread);
+  if (!unread.empty())
+    doubts +=
+        fmt::format("warning: truth: columns that are not read: {}\n", fmt::join(unread, ", "));
   const measure::Score score = measure::ScoreOf(
       "", all, collar, collar_s ? measure::Collars() : measure::Collars(truths.collars_s()));
   return {
-      measure::ScoresJson({score}, collar)["grammars"][0].dump(),
+      measure::ScoresJson({score})["grammars"][0].dump(),
       exchange::WarningsOf(truths) + doubts + measure::ClockWarning(grammar.name(), all, truths)};
 }
 

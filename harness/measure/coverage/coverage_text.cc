@@ -164,6 +164,9 @@ Coverage::Share Coverage::Thresholds() const {
 
 Result<Coverage> CoverageOf(const std::vector<episode::EpisodeName>& episodes,
                             const CoverageRequest& request) {
+  const grammar::CompileResult compiled =
+      episode::EpisodeOpener(request.root).Compile(episodes.front(), request.grammar, {});
+  if (!compiled.program) return tl::unexpected(compiled.diagnostics);
   const std::size_t slices =
       std::min(episodes.size(), kSlicesPerJob * static_cast<std::size_t>(request.jobs));
   std::vector<WorkerJob> jobs;

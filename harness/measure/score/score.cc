@@ -70,7 +70,7 @@ void AddEpisode(const EpisodeToScore& judged, const LabelledEpisode& episode,
 /// If `event` is empty, all kinds.
 EventScore ScoreKind(const std::vector<EpisodeToScore>& episodes, const std::string& event,
                      double collar_s) {
-  EventScore score{.event = event.empty() ? "all" : event};
+  EventScore score{.event = event.empty() ? "all" : event, .collar_s = collar_s};
   std::vector<LabelledEpisode> labelled;
   EditOfTracks edit;
   for (const EpisodeToScore& judged : episodes) {
@@ -103,7 +103,7 @@ MeanOfKinds MeanOf(const std::vector<EventScore>& kinds) {
   return mean;
 }
 
-EpisodeRow RowOf(const EpisodeToScore& judged, const std::set<std::string>& kinds,
+EpisodeRow RowOf(const EpisodeToScore& judged, const std::vector<EventScore>& kinds,
                  double collar_s) {
   EpisodeRow row{.episode = judged.scenario,
                  .person = judged.person,
@@ -117,10 +117,13 @@ EpisodeRow RowOf(const EpisodeToScore& judged, const std::set<std::string>& kind
   EditOfTracks edit;
   edit.Add(TracksOf(judged.truth, judged.found, judged.ticks, judged.hands));
   row.total.edit = edit.Mean();
-  for (const std::string& kind : kinds) {
+  row.total.within_collar = {};
+  for (const EventScore& kind : kinds) {
     const LabelledEpisode of_kind =
-        Labelled(OfKind(judged.truth, kind), OfKind(judged.found, kind), judged.ticks);
-    row.hits[kind] = HitsByOverlap(of_kind.whole.truth, of_kind.whole.prediction, 0.50);
+        Labelled(OfKind(judged.truth, kind.event), OfKind(judged.found, kind.event), judged.ticks);
+    row.total.within_collar += MatchWithCollar(of_kind.whole.truth, of_kind.whole.prediction,
+                                               kind.collar_s * of_kind.ticks_per_second, 0);
+    row.hits[kind.event] = HitsByOverlap(of_kind.whole.truth, of_kind.whole.prediction, 0.50);
   }
   return row;
 }
@@ -204,9 +207,12 @@ Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& all
   if (!collars.empty()) {
     score.total.within_collar = {};
     for (const EventScore& kind : score.events) score.total.within_collar += kind.within_collar;
+    if (!score.events.empty()) score.total.collar_s = score.events.front().collar_s;
+    for (const EventScore& kind : score.events)
+      if (kind.collar_s != score.total.collar_s) score.total.collar_s = -1;
   }
   for (const EpisodeToScore& episode : episodes)
-    score.rows.push_back(RowOf(episode, kinds, collar_s));
+    score.rows.push_back(RowOf(episode, score.events, collar_s));
   return score;
 }
 

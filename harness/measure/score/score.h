@@ -80,6 +80,7 @@ struct EventScore {
   TimeErrors begin, end, late;  ///< late: from an event's end to its decision
   Hits overlap_10, overlap_25, overlap_50;
   EventErrors within_collar;
+  double collar_s = 0;  ///< -1: of a total whose kinds have several
   FrameCounts frames;
   double edit = 100;  ///< mean over the tracks of the episodes (harness/measure/score/score.h)
   FurtherScores further;
@@ -128,20 +129,19 @@ Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& epi
 /// A table for people: Ward's event errors, boundary errors, F1@{10,25,50}, edit, frames, F at the
 /// collar, latency. Below it, the events that the grammar does not cover, and those that are
 /// ignored.
-std::string ScoreTable(const Score& score, double collar_s);
+std::string ScoreTable(const Score& score);
 
 /// The tables of several grammars, and what their columns mean.
-std::string ScoresText(const std::vector<Score>& scores, double collar_s);
+std::string ScoresText(const std::vector<Score>& scores);
 
 /// The totals of several grammars beside each other, as a Markdown table.
-std::string SideBySide(const std::vector<Score>& scores, double collar_s);
+std::string SideBySide(const std::vector<Score>& scores);
 
 /// {"collar_s", "grammars": [{"grammar", "episodes", "not_covered", "ignored", "total": {..},
 /// "events": [{..}]}]}; shares from 0 to 1, times in seconds; docs/regression-suite.md says what
 /// each is.
 /// `with_events`: rows have what was compared, too.
-nlohmann::ordered_json ScoresJson(const std::vector<Score>& scores, double collar_s,
-                                  bool with_events = false);
+nlohmann::ordered_json ScoresJson(const std::vector<Score>& scores, bool with_events = false);
 
 /// {"by_event": {EVENT: {"of", "confirmed"}}, "differences": ["..", ..]}
 nlohmann::ordered_json EvaluationJson(const Evaluation& evaluation);

@@ -331,9 +331,9 @@ Result<LabelScores> ScoreLabels(const LabelsRequest& request, std::string& warni
   return LabelScorer(request, warnings).Score();
 }
 
-std::string LabelScoresText(const LabelScores& scores, double collar_s, bool differences) {
+std::string LabelScoresText(const LabelScores& scores, bool differences) {
   if (scores.of_grammars.empty()) return "";  // no table of nothing
-  std::string text = ScoresText(scores.of_grammars, collar_s);
+  std::string text = ScoresText(scores.of_grammars);
   if (scores.of_people) {
     const Score& score = scores.of_grammars.front();
     const auto kappa = [](const EventScore& event) {
@@ -361,7 +361,7 @@ std::string LabelScoresText(const LabelScores& scores, double collar_s, bool dif
   text += scores.counted.Text();
   if (scores.HasHands()) {
     text += "\nEach hand for itself:\n\n";
-    for (const Score& one : scores.by_hand) text += ScoreTable(one, collar_s) + "\n";
+    for (const Score& one : scores.by_hand) text += ScoreTable(one) + "\n";
   }
   for (std::size_t g = 0; differences && g < scores.differences.size(); ++g)
     text += fmt::format("\n{}, against the labels:\n{}", scores.of_grammars[g].grammar,
@@ -387,7 +387,10 @@ Result<LabelScores> ScoreLabelFiles(const LabelFilesRequest& request, std::strin
       return Refused("no recording says which events there are", "--grammar NAME, for the map");
     PREHEND_TRY(map, exchange::ReadLabelMap(request.label_map, events));
   }
-  PREHEND_TRY(auto files, ReadBoth(request, map ? map->csv : exchange::CsvReading{}));
+  PREHEND_TRY(
+      auto files,
+      ReadBoth(request,
+               map ? map->csv : exchange::CsvReading{.role_names = exchange::RolesOf(events)}));
   if (events.empty()) map = MapOf(files, events);
   PREHEND_TRY(auto reading,
               exchange::LabelReading::Of(std::move(files), map ? &*map : nullptr, events));

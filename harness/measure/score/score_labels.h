@@ -74,6 +74,6 @@ void AddScores(const std::string& grammar, std::vector<EpisodeToScore> episodes,
                const Collars& collars, LabelScores& scores);
 
 /// Tables for people; with `differences` these, too.
-std::string LabelScoresText(const LabelScores& scores, double collar_s, bool differences);
+std::string LabelScoresText(const LabelScores& scores, bool differences);
 
 }  // namespace prehend::measure

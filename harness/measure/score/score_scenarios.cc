@@ -287,12 +287,10 @@ ScenarioScores ScoreScenarios(const std::vector<ScoreRequest>& requests, const A
   return scores;
 }
 
-std::string ScenarioScoresText(const ScenarioScores& scores, double collar_s,
-                               bool all_differences) {
+std::string ScenarioScoresText(const ScenarioScores& scores, bool all_differences) {
   std::vector<std::string> names;
   for (const Score& score : scores.of_grammars) names.push_back(score.grammar);
-  return ScoresText(scores.of_grammars, collar_s) + "\n" +
-         EvaluatorTable(names, scores.evaluators) + "\n" +
+  return ScoresText(scores.of_grammars) + "\n" + EvaluatorTable(names, scores.evaluators) + "\n" +
          DifferencesText(names, scores.evaluators, all_differences);
 }
 

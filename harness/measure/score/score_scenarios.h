@@ -58,6 +58,6 @@ ScenarioScores ScoreScenarios(const std::vector<ScoreRequest>& requests, const A
                               const NotCovered& not_covered, double collar_s, int jobs);
 
 /// Tables for people, and what differs: all of it, or of much the beginning.
-std::string ScenarioScoresText(const ScenarioScores& scores, double collar_s, bool all_differences);
+std::string ScenarioScoresText(const ScenarioScores& scores, bool all_differences);
 
 }  // namespace prehend::measure

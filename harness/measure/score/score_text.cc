@@ -36,7 +36,17 @@ std::string Milliseconds(const TimeErrors& errors) {
                      SignedMs(errors.QuantileByMagnitude(1)));
 }
 
-Row Header(double collar_s) {
+/// What the name of the column does not say.
+std::string CollarsText(const Score& score) {
+  if (score.total.collar_s >= 0) return "";
+  std::string text;
+  for (const EventScore& event : score.events)
+    text += fmt::format("{}{} {:.0f} ms", text.empty() ? "F@collar: " : ", ", event.event,
+                        kMsPerS * event.collar_s);
+  return text + "\n";
+}
+
+Row Header(const Score& score) {
   return {"event",
           "true",
           "found",
@@ -53,7 +63,8 @@ Row Header(double collar_s) {
           "@50",
           "edit",
           "frames",
-          fmt::format("F@{:.0f}ms", kMsPerS * collar_s),
+          score.total.collar_s >= 0 ? fmt::format("F@{:.0f}ms", kMsPerS * score.total.collar_s)
+                                    : "F@collar",
           "late ms"};
 }
 
@@ -169,6 +180,9 @@ Json FurtherJson(const EventScore& s) {
           {"psds", further.psds}};
 }
 
+/// Null, if it is of kinds with several.
+Json CollarJson(double collar_s) { return collar_s >= 0 ? Json(collar_s) : Json(); }
+
 Json EventScoreJson(const EventScore& s) {
   const Ward& ward = s.ward;
   return {{"event", s.event},
@@ -204,6 +218,7 @@ Json EventScoreJson(const EventScore& s) {
           {"edit", s.edit},
           {"frame_accuracy", s.frames.Accuracy()},
           {"kappa", s.frames.Kappa()},
+          {"collar_s", CollarJson(s.collar_s)},
           {"collar_f", s.within_collar.AsHits().F1()},
           {"collar_error_rate", s.within_collar.ErrorRate()},
           {"latency_s", TimeJson(s.late)},
@@ -268,25 +283,27 @@ Json MeanJson(const MeanOfKinds& mean) {
 
 }  // namespace
 
-std::string ScoreTable(const Score& score, double collar_s) {
-  std::vector<Row> rows = {Header(collar_s)};
+std::string ScoreTable(const Score& score) {
+  std::vector<Row> rows = {Header(score)};
   for (const EventScore& event : score.events) rows.push_back(RowOf(event));
   rows.push_back(RowOf(score.total));
   if (score.events.size() > 1) rows.push_back(RowOf(score.mean, rows.front().size()));
-  return fmt::format("{}, {}{}\n{}{}{}{}{}", score.grammar,
-                     score.set.empty() ? "" : "set " + score.set + ", ",
-                     grammar::CountOf(score.episodes, "episode"),
-                     truth::AlignColumns(rows, truth::Numbers::kRight), MomentsText(score),
-                     NotCoveredText(score), IgnoredText(score), ProgramText(score));
+  return fmt::format(
+      "{}, {}{}\n{}{}{}{}{}{}", score.grammar, score.set.empty() ? "" : "set " + score.set + ", ",
+      grammar::CountOf(score.episodes, "episode"),
+      truth::AlignColumns(rows, truth::Numbers::kRight), CollarsText(score), MomentsText(score),
+      NotCoveredText(score), IgnoredText(score), ProgramText(score));
 }
 
-std::string SideBySide(const std::vector<Score>& scores, double collar_s) {
+std::string SideBySide(const std::vector<Score>& scores) {
   std::string text = fmt::format(
       "| grammar | true events | not covered by the grammar | correct | deleted | fragmented | "
       "merged | inserted | begin, ms | end, ms | F1@10 | F1@25 | F1@50 | F1@50, mean of types | "
-      "edit | frames % | F at {:.0f} ms "
+      "edit | frames % | F at {} "
       "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
-      kMsPerS * collar_s);
+      scores.front().total.collar_s >= 0
+          ? fmt::format("{:.0f} ms", kMsPerS * scores.front().total.collar_s)
+          : "its collar");
   for (const Score& score : scores) {
     const EventScore& s = score.total;
     const Ward& ward = s.ward;
@@ -304,10 +321,10 @@ std::string SideBySide(const std::vector<Score>& scores, double collar_s) {
   return text;
 }
 
-std::string ScoresText(const std::vector<Score>& scores, double collar_s) {
+std::string ScoresText(const std::vector<Score>& scores) {
   std::string text;
-  for (const Score& one : scores) text += ScoreTable(one, collar_s) + "\n";
-  if (scores.size() > 1) text += SideBySide(scores, collar_s) + "\n";
+  for (const Score& one : scores) text += ScoreTable(one) + "\n";
+  if (scores.size() > 1) text += SideBySide(scores) + "\n";
   return text +
          "C correct, D deleted, F fragmented, M merged, FM both, I' inserted (Ward et al. 2011); "
          "boundary errors are\n"
@@ -317,7 +334,7 @@ std::string ScoresText(const std::vector<Score>& scores, double collar_s) {
          "Every grammar is scored on\nthe same true events.\n";
 }
 
-Json ScoresJson(const std::vector<Score>& scores, double collar_s, bool with_events) {
+Json ScoresJson(const std::vector<Score>& scores, bool with_events) {
   Json grammars = Json::array();
   for (const Score& s : scores) {
     Json events = Json::array();
@@ -335,7 +352,8 @@ Json ScoresJson(const std::vector<Score>& scores, double collar_s, bool with_eve
                         {"events", std::move(events)},
                         {"rows", RowsJson(s.rows, with_events)}});
   }
-  return {{"collar_s", collar_s}, {"grammars", std::move(grammars)}};
+  return {{"collar_s", CollarJson(scores.empty() ? 0 : scores.front().total.collar_s)},
+          {"grammars", std::move(grammars)}};
 }
 
 Json EvaluationJson(const Evaluation& evaluation) {

@@ -32,6 +32,39 @@ TEST_F(Labels, OfSeveralChildrenTheFirstCountsAndTheOthersAreTold) {
       << read("2,2.5,jar,things\n2.5,3,can,things\n");
 }
 
+TEST_F(Labels, ColumnsThatAreCalledAsRolesAreRoles) {
+  const auto read = [&](const std::string& table, const std::string& map_text) {
+    std::optional<LabelMap> map;
+    if (!map_text.empty()) map = Map(map_text).value();
+    const auto file = ReadLabels(File("a.csv", "begin_s,end_s," + table),
+                                 map ? map->csv : CsvReading{.role_names = RolesOf(kEvents)});
+    if (!file) return grammar::Format(file.error());
+    const auto reading = LabelReading::Of({*file}, map ? &*map : nullptr, kEvents);
+    if (!reading) return grammar::Format(reading.error());
+    const auto truth = reading->Truth(0, {kHand, kCup, kTable}, 100, 1000);
+    if (!truth) return truth.error().front().message + "; " + truth.error().front().hint;
+    return Text(*truth) + reading->warnings();
+  };
+  const std::string both = "grasping(right_hand, cup) 100..200; ",
+                    hold = "labels: {hold: {event: grasping}}\n";
+  EXPECT_EQ(read("event,hand,object,a\n1,2,grasping,right_hand,cup,\n", ""), both);
+  EXPECT_EQ(read("label,hand,object\n1,2,grasping(hand=right_hand),,cup\n", ""), both);
+  EXPECT_EQ(read("label,Hand,object\n1,2,hold,right_hand,cup\n", hold), both);
+  EXPECT_EQ(read("event,hand,object\n1,2,grasping,right_hand,cop\n", ""),
+            "the recording has no entity 'cop'; did you mean 'cup'?");
+  EXPECT_EQ(
+      read("label,hand,object\n1,2,hold,right_hand,red\n", hold + "columns: {object: ignore}\n"),
+      "grasping(right_hand) 100..200; ");
+  EXPECT_EQ(read("label,hand,object\n1,2,hold,right,cup\n",
+                 hold + "tiers: {right: {hand: right_hand}}\n"),
+            both)
+      << "one column is role and tier, and the map says what it holds";
+  const std::string said = read("event,hand,objct\n1,2,grasping,right_hand,cup\n", "");
+  EXPECT_TRUE(said.starts_with("grasping(right_hand) 100..200; ")) << said;
+  EXPECT_NE(said.find("a.csv:1:1: warning: the column 'objct' is not read"), std::string::npos);
+  EXPECT_NE(said.find("did you mean 'object'?"), std::string::npos) << said;
+}
+
 TEST_F(Labels, TicksAreOnlyOfWhatIsFound) {
   EXPECT_EQ(Problem("a.jsonl", "{\"event\": \"x\", \"begin_tick\": 1, \"end_tick\": 2}\n"),
             "a.jsonl:1:1: error: end_tick: ticks are read only of what is --found; wanted end_s, "

@@ -66,14 +66,31 @@ TEST_F(LabelTables, ALengthStandsForAnEnd) {
   EXPECT_EQ(Read("a.csv", "t0,long,what\n2,0.5,hold\n",
                  {.begin = "t0", .duration = "long", .label = "what"}),
             "2..2.5 hold; ");
-  // An end is taken before a length; and a negative length is an error.
-  EXPECT_EQ(Read("a.csv", "begin,end,duration,label\n1,2,7,hold\n"), "1..2 hold; ");
+  // A negative length is an error.
   EXPECT_TRUE(StartsWith(Read("a.csv", "begin,duration,label\n1,-2,hold\n"),
                          "2:6 'hold' ends before it begins: 1 s to -1 s"));
   EXPECT_EQ(Read("a.csv", "onset,duration,trial_type\n1.3,1.6,grasp\n",
                  {.begin = "onset", .end = "duration", .label = "trial_type"}),
             "1:1 found the columns onset, duration, trial_type; the map says that 'duration' is "
             "the end of a label | a length is no end: columns: {duration: duration}");
+}
+
+TEST_F(LabelTables, OfTwoColumnsThatCouldBeMeantNoneIsTaken) {
+  EXPECT_EQ(
+      Read("a.csv", "begin,end,end_s,label\n1,2,3,hold\n"),
+      "1:1 found the columns begin, end, end_s, label: which of 'end' and 'end_s' is the end? "
+      "| in the map: columns: {end: end}");
+  EXPECT_EQ(Read("a.csv", "begin,end,end_s,label\n1,2,3,hold\n", {.end = "end_s"}), "1..3 hold; ");
+  EXPECT_EQ(Read("a.csv", "begin,end,label,action\n1,2,x,hold\n"),
+            "1:1 found the columns begin, end, label, action: which of 'label' and 'action' is the "
+            "label? | in the map: columns: {label: label}");
+  EXPECT_EQ(Read("a.csv", "begin,end,duration,label\n1,2,3,hold\n"),
+            "2:5 duration: found 3 s, and the end is 1 s after the begin; which is right? In the "
+            "map: columns: {end: end} | ");
+  EXPECT_EQ(Read("a.csv", "begin,end,duration,label\n1,2,3,hold\n", {.end = "end"}), "1..2 hold; ");
+  EXPECT_EQ(Read("a.csv", "begin,end,duration,label\n1,2,1.05,hold\n"), "1..2 hold; ");
+  EXPECT_EQ(Read("a.csv", "start_frame,start_s,stop_frame,stop_s,label\n10,1,20,2,hold\n"),
+            "1..2 hold; ");
 }
 
 TEST_F(LabelTables, RowsForBothEndsArePaired) {

@@ -28,8 +28,7 @@ TEST(ScoreOf, BoundaryErrorsAreSignedAndLatencyIsFromTheEnd) {
   EXPECT_DOUBLE_EQ(score.total.begin.QuantileByMagnitude(1), -0.04) << "the largest keeps its sign";
   EXPECT_DOUBLE_EQ(score.total.end.QuantileByMagnitude(1), 0);
   EXPECT_DOUBLE_EQ(score.total.late.QuantileByMagnitude(1), 0.2);
-  EXPECT_NE(ScoreTable(score, 0.05).find("-15/-40/-40   0/0/0"), std::string::npos)
-      << ScoreTable(score, 0.05);
+  EXPECT_NE(ScoreTable(score).find("-15/-40/-40   0/0/0"), std::string::npos) << ScoreTable(score);
 }
 
 TEST(ScoreOf, WhatIsNotSaidIsMissed) {
@@ -41,7 +40,7 @@ TEST(ScoreOf, WhatIsNotSaidIsMissed) {
   EXPECT_EQ(score.total.truths, 2);
   EXPECT_EQ(score.total.ward.deleted, 1);
   EXPECT_NEAR(score.total.overlap_50.F1(), 2.0 / 3, 1e-12);
-  const std::string table = ScoreTable(score, 0.05);
+  const std::string table = ScoreTable(score);
   EXPECT_TRUE(table.ends_with(
       "\nnot covered: slide (1 true); no rule of the grammar prints them, so they count as missed\n"
       "ignored: slidding (3 found); docs/events.md does not define them\n"))
@@ -84,7 +83,7 @@ TEST(ScoreOf, WhereNothingIsTrueWhatIsFoundIsNoSuccess) {
       EXPECT_EQ(one, share);
   }
   // No numbers are null.
-  const auto total = ScoresJson({wrong}, 0.05)["grammars"][0]["total"];
+  const auto total = ScoresJson({wrong})["grammars"][0]["total"];
   for (const char* times : {"begin_s", "end_s", "latency_s"})
     for (const char* figure : {"median", "p95", "max"})
       EXPECT_TRUE(total[times][figure].is_null()) << times << figure;
