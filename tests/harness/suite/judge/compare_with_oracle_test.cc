@@ -53,15 +53,15 @@ TEST_F(DerivationTest, ABoundaryOutsideItsBandDoesNot) {
   const OracleComparison late = Compared();
   EXPECT_EQ(late.Differing(), 1);
   EXPECT_EQ(GroundTruthText(late),
-            "ground truth: picking_up(right_hand, milk) begins 43.8 ms earlier than recognised; "
+            "ground truth: picking_up(right_hand, milk) begins 41.7 ms earlier than recognised; "
             "its end agrees (recognised " +
                 When("picking_up") + ")\n");
-  EXPECT_NE(OracleLine(late).find("; 1 more begins or ends up to 43.8 ms elsewhere"),
+  EXPECT_NE(OracleLine(late).find("; 1 more begins or ends up to 41.7 ms elsewhere"),
             std::string::npos)
       << OracleLine(late);
   Find("picking_up").interval.end -= 40;
   EXPECT_NE(GroundTruthText(Compared())
-                .find(" begins 43.8 ms earlier than recognised and ends 56.2 ms later than "
+                .find(" begins 41.7 ms earlier than recognised and ends 56.2 ms later than "
                       "recognised (recognised "),
             std::string::npos)
       << GroundTruthText(Compared());
