@@ -114,7 +114,7 @@ def _times(t, rate_hz, frames):
     if usual > 2:
         unit, _, parts = next(one for one in _PARTS if usual < one[1])
         wrong(f"frames are {usual:g} s apart", f"t is in seconds; divide {unit} by {parts}")
-    if t[0] < -1e-6 or t[0] > 1e6:
+    if abs(t[0]) > 1e6:
         wrong(f"t begins at {t[0]:g} s", "count from the beginning: t - t[0]")
     per_second = _FINE
     rate = round(1 / usual)

@@ -199,7 +199,7 @@ ValueFormat<LineEntry> LineFormat() {
           .Optional("sensor_sets", &T::sensor_sets, ListOf(WithPlace(Name()), 0, kMaxSets), "")
           .format();
   using F = FrameEntry;
-  const auto tick = Integer<std::int64_t>(0, kLatestTick);
+  const auto tick = Integer<std::int64_t>(-kLatestTick, kLatestTick);
   return ByKey<LineEntry>(
       "a line",
       {{"tick",

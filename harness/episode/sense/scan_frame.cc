@@ -185,7 +185,8 @@ bool ScanFrame(std::string_view line, FrameEntry& frame) {
   Scanner scanner(line);
   unsigned seen = 0;
   const bool all = scanner.Mapping([&](std::string_view key) {
-    if (key == "tick") return IsNew(0, seen) && scanner.Integer(0, kLatestTick, frame.tick.value);
+    if (key == "tick")
+      return IsNew(0, seen) && scanner.Integer(-kLatestTick, kLatestTick, frame.tick.value);
     if (key == "samples") return IsNew(1, seen) && ScanNamed(scanner, frame.samples, ScanSample);
     if (key == "hands") return IsNew(2, seen) && ScanNamed(scanner, frame.hands, ScanHand);
     return key == "touches" && IsNew(3, seen) && scanner.Take('[') && scanner.Take(']');

@@ -86,8 +86,8 @@ void FrameBuilder::Take(grammar::Tick tick, std::span<const PoseSeen> poses,
   if (before >= 0 && tick <= before)
     state_->RefuseFrame(fmt::format("it comes after tick {}", before),
                         "times increase from frame to frame; sort the frames by time");
-  if (tick < 0) state_->RefuseFrame("its time is before 0", "count from the beginning: t - t[0]");
-  if (tick > episode::kLatestTick) state_->RefuseFrame("it is too late", "are the times seconds?");
+  if (std::abs(tick) > episode::kLatestTick)
+    state_->RefuseFrame("it is too late", "are the times seconds?");
   frame.samples.resize(poses.size());
   for (std::size_t i = 0; i < poses.size(); ++i) state_->Fill(poses[i], frame.samples[i]);
   frame.hands.resize(grips.size());
