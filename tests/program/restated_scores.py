@@ -339,7 +339,7 @@ def figures(truth, found, end):
             "begin_s": quantiles([x for x, _ in offsets]), "end_s": quantiles([x for _, x in offsets]),
             "f1_10": f1(h[10]), "f1_25": f1(h[25]), "f1_50": f1(h[50]), "edit": mean(scores, 100),
             "frame_accuracy": accuracy, "kappa": (accuracy - chance) / (1 - chance) if chance < 1 and everything else 1,
-            "collar_f": f1((correct, len(found) - correct, len(truth) - correct)),
+            "collar_f": f1((correct, len(found) - correct, len(truth) - correct)), "collar_s": 0.05,
             "collar_error_rate": errors / len(truth) if truth else 0 if not found else 1,
             "latency_s": {"median": None, "p95": None, "max": None},
             "further": further(truth, found, labels, end, counts)}

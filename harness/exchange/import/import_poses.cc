@@ -571,8 +571,7 @@ class Importer {
   std::vector<Track>&tracks_ = maker_->tracks, &openings_ = maker_->openings;
   std::map<std::int64_t, double>& times_ = maker_->times;
   std::vector<std::string> trembling_;
-  double trembles_m_ = 0;  ///< the most
-  double smooth_s_ = 0.2;  ///< over so long means no longer tremble
+  double trembles_m_ = 0, smooth_s_ = 0.2;  ///< the most; over so long means no longer tremble
 };
 
 }  // namespace

@@ -556,12 +556,11 @@ class CsvPoseReader {
   bool streams_ = false, goes_on_ = true;
   double row_s_ = 0;  ///< of the last row
   std::vector<std::string> names_;
-  std::map<std::string, std::size_t> seats_by_name_;
+  std::map<std::string, std::size_t> seats_by_name_, rows_of_;  ///< .. of body, without times
   std::map<std::string, int> twice_;     ///< names of several columns -> place of the last
   std::map<std::string, Wanted> index_;  ///< bodies and markers
   std::optional<std::size_t> time_seat_;
   std::vector<std::size_t> body_seats_;
-  std::map<std::string, std::size_t> rows_of_;  ///< by body, of files without times
   std::optional<double> first_time_;
   std::map<std::string, double> last_times_s_;  ///< by body; of a row with all bodies under ""
   std::size_t steps_ = 0, whole_steps_ = 0, unit_steps_ = 0;  ///< of times
