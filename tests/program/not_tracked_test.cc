@@ -58,6 +58,30 @@ TEST_F(NotTracked, AShortGapIsBridgedAndTheReportSaysSo) {
       "warning: 'cup' is not tracked in 1 gap: 0.080 s are bridged, in 0.000 s it is unknown\n");
 }
 
+// Its gripper may still say its width: the hand is where it was seen last, and stands still there.
+TEST_F(NotTracked, AHandWhoseGripIsKnownStaysWhereItWas) {
+  WriteFile(folder_ / "g.grammar",
+            "grammar g\nevent near(hand: Hand, cup: Cup) while gap(hand, cup) < 20 cm\n"
+            "event moving(hand: Hand) while surface_speed(hand) > 10 cm/s\n");
+  const auto recording = [](const std::string& hands) {
+    std::string text =
+        "{\"recording\": 1, \"episode\": \"e\", \"ticks_per_second\": 100, \"entities\": {\"cup\": "
+        "{\"class\": \"Cup\", \"size_m\": [0.1, 0.1, 0.1]}, \"hand\": {\"hand\": true, \"size_m\": "
+        "[0, 0, 0]}}}\n";
+    for (int i = 0; i < 60; ++i)
+      text += "{\"tick\": " + std::to_string(i) +
+              ", \"samples\": {\"cup\": {\"at_m\": [1, 0, 0.8]}, \"hand\": " +
+              (i >= 20 && i < 23 ? "null}" + hands : "{\"at_m\": [0.9, 0, 0.8]}}") + "}\n";
+    return text + "{\"end_tick\": 60}\n";
+  };
+  const Said without = Segment(recording("")),
+             with = Segment(recording(", \"hands\": {\"hand\": {\"trigger\": 0.5}}"));
+  EXPECT_EQ(with.exit_code, 0) << with.err;
+  EXPECT_EQ(with.out, without.out);
+  EXPECT_NE(with.out.find("near   0.0000   0.6000"), std::string::npos) << with.out;
+  EXPECT_EQ(with.out.find("moving"), std::string::npos) << with.out;
+}
+
 // Of a hand that is lost for 2 s, from 1.0 s on, nobody knows whether it idles; for 0.5 s it does
 // what it did. Looks are bridged for 0.1 s.
 TEST_F(NotTracked, AHandThatIsLostForLongDoesNotIdle) {

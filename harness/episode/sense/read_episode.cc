@@ -411,15 +411,16 @@ class EpisodeReader {
                               entry.style->value, styles);
       hand.style = static_cast<int>(style - styles.begin());
     }
+    // Who is lost and has none given keeps those that it had.
     std::vector<grammar::CollisionSphere>& collision_spheres = now_.collision_spheres[slot];
-    collision_spheres.clear();
+    if (!entry.collision_spheres_m.empty()) collision_spheres.clear();
     for (const Eigen::Vector4d& f : entry.collision_spheres_m) {
       if (f[3] < 0)
         errors.Add(named.name_where,
                    fmt::format("'{}': a collision sphere of radius {:g}", named.name, f[3]));
       collision_spheres.push_back({f.head<3>(), std::max(f[3], 0.0)});
     }
-    has_spheres_[slot] = !collision_spheres.empty();
+    has_spheres_[slot] = !entry.collision_spheres_m.empty();
   }
 
   /// What was not given of a hand is where its sample is, also in frames that do not mention it.
@@ -444,8 +445,8 @@ class EpisodeReader {
       return errors.Add(entry.b.where, fmt::format("'{}' cannot touch itself", entry.b.value));
     grammar::Touch touch{.a = a,
                          .b = b,
-                         .up_on_a = entry.up_on_a,
-                         .up_on_b = entry.up_on_b.value_or(-entry.up_on_a),
+                         .up_on_a = std::clamp(entry.up_on_a, -1.0, 1.0),
+                         .up_on_b = std::clamp(entry.up_on_b.value_or(-entry.up_on_a), -1.0, 1.0),
                          .normal_force_n = entry.force_n};
     touch.vertical_speed_m_per_s = entry.vertical_speed_m_per_s.value_or(
         SpeedAtTheUpper(touch, now_.entities[static_cast<std::size_t>(a)],
