@@ -401,6 +401,23 @@ TEST_F(Recognisers, RealTimeKeepsThePaceOfTheRecording) {
   EXPECT_EQ(Has(said.err, " answers came after the next frame"), "");
 }
 
+// Half a second lies between its last frame and its end.
+TEST_F(Recognisers, InRealTimeTheEndComesAtItsTimeAndNothingIsLate) {
+  std::string take =
+      "{\"recording\": 1, \"episode\": \"e\", \"ticks_per_second\": 10, \"entities\": {\"cup\": "
+      "{\"class\": \"Cup\", \"size_m\": [0.1, 0.1, 0.1]}, \"hand\": {\"hand\": true, \"size_m\": "
+      "[0, 0, 0]}}}\n";
+  for (int i = 0; i < 3; ++i)
+    take += "{\"tick\": " + std::to_string(i) +
+            ", \"samples\": {\"cup\": {\"at_m\": [1, 0, 0.8]}, \"hand\": {\"at_m\": [0, 0, 1]}}}\n";
+  WriteFile(folder_ / "late_end.jsonl", take + "{\"end_tick\": 7}\n");
+  const auto begin = std::chrono::steady_clock::now();
+  const Said said = Prehend({"grammar", "recogniser", Program(Python("")),
+                             (folder_ / "late_end.jsonl").string(), "--pace", "real_time"});
+  EXPECT_GT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 0.65);
+  EXPECT_EQ(said.err.find("came after the next frame"), std::string::npos) << said.err;
+}
+
 TEST_F(Recognisers, ManyScenariosTakeLittleTime) {
   const std::string distance = std::string("python3 -B ") + kExamples + "distance.py";
   const Said without = Prehend({"score", "grasp/*", "--json"});

@@ -158,14 +158,16 @@ class Recogniser::Talk {
       process_.Send(lines.str());
       lines.str("");
     };
+    const auto await = [&](grammar::Tick tick) {
+      const double at_s = static_cast<double>(tick) / per_s;
+      while (choice_.pace == Pace::kRealTime && !done_.broken && SecondsSince(start_) < at_s &&
+             !process_.has_said_all())
+        Exchange(at_s - SecondsSince(start_));
+    };
     const grammar::Tick end = episode_->each_frame([&](const grammar::Frame& frame) {
       if (done_.broken || process_.has_said_all()) return;
       writer.Write(frame);
-      if (choice_.pace == Pace::kRealTime) {
-        const double at_s = static_cast<double>(frame.tick) / per_s;
-        while (!done_.broken && SecondsSince(start_) < at_s && !process_.has_said_all())
-          Exchange(at_s - SecondsSince(start_));
-      }
+      await(frame.tick);
       send();
       sent_ = frame.tick;
       if (choice_.pace == Pace::kOnline)
@@ -178,6 +180,7 @@ class Recogniser::Talk {
                    Rule::kEnds, TooLong(), kTooLong);
     });
     writer.Finish(end);
+    await(end);
     send();
     if (!process_.has_said_all()) sent_ = end;
     if (!is_batch_) process_.CloseInput();

@@ -294,8 +294,8 @@ Result<grammar::Timeline> Foreign::Find(const std::vector<episode::Take>& takes,
     if (!recognised.stderr_tail.empty()) episode.notes += who + recognised.stderr_tail;
     if (!episode.notes.empty() && !episode.notes.ends_with('\n')) episode.notes += '\n';
     if (recognised.late_frames > 0)
-      episode.notes +=
-          fmt::format("{}{} answers came after the next frame\n", who, recognised.late_frames);
+      episode.notes += fmt::format("{}{} answer{} came after the next frame\n", who,
+                                   recognised.late_frames, recognised.late_frames == 1 ? "" : "s");
     episode.cpu_s = recognised.cpu_s;
     episode.covers = std::move(recognised.covers);
     if (recognised.broken) {
