@@ -120,6 +120,12 @@ class Live(unittest.TestCase):
         self.assertEqual([(one["event"], one["begin_s"], one["end_s"]) for one in told],
                          [("contact", 0.0, 2.0), ("supported_by", 0.0, 2.0)])
 
+    def test_a_turn_may_be_longer_than_one_by_rounding(self):
+        monitor = prehend.Grammar("pick_and_place_from_motion").monitor(takes.ENTITIES)
+        monitor.update(0, {"cup": (0, 0, 0.8, 1.0000001, 0, 0, 0)})
+        with self.assertRaisesRegex(prehend.Error, "unit quaternion"):
+            monitor.update(0.1, {"cup": (0, 0, 0.8, 1.0, 0.2, 0, 0)})
+
     def test_a_refused_frame_changes_nothing(self):
         monitor = prehend.Grammar("contact").monitor(takes.ENTITIES)
         monitor.update(0, {"cup": (0, 0, 1)}, touches=[("cup", "table", 1.0)])

@@ -320,7 +320,7 @@ ValueFormat<Eigen::Vector4d> Vector<4>(double lowest, double highest) {
 }
 
 ValueFormat<Eigen::Vector4d> UnitQuaternion() {
-  const auto vector = Vector<4>(-1, 1);
+  const auto vector = Vector<4>(-1.01, 1.01);
   return ValueFormat<Eigen::Vector4d>(
              vector.schema(),
              [vector](const YamlNode& node, DiagnosticList& errors, Eigen::Vector4d& value) {

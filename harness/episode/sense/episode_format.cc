@@ -179,7 +179,7 @@ ValueFormat<LineEntry> LineFormat() {
       StructFormat<H>("hand")
           .NamedByKey()
           .Optional("trigger", &H::trigger, Number(0, 1), "")
-          .Optional("ahead", &H::ahead, Vector<3>(-1, 1), "")
+          .Optional("ahead", &H::ahead, Vector<3>(-1.01, 1.01), "")
           .Optional("collision_spheres_m", &H::collision_spheres_m,
                     ListOf(Vector<4>(-kMaxPosition_m, kMaxPosition_m), 1, kMaxCollisionSpheres), "")
           .Renamed("feelers_m", "collision_spheres_m")
@@ -190,12 +190,12 @@ ValueFormat<LineEntry> LineFormat() {
       StructFormat<T>("a touch")
           .Required("a", &T::a, Name(), "")
           .Required("b", &T::b, Name(), "")
-          .Optional("up_on_a", &T::up_on_a, Number(-1, 1), "")
-          .Optional("up_on_b", &T::up_on_b, Number(-1, 1), "")
+          .Optional("up_on_a", &T::up_on_a, Number(-1.01, 1.01), "")
+          .Optional("up_on_b", &T::up_on_b, Number(-1.01, 1.01), "")
           .Optional("force_n", &T::force_n, Number(0, 1e9), "")
           .Optional("vertical_speed_m_per_s", &T::vertical_speed_m_per_s, Number(0, 1e9), "")
           .Optional("at_m", &T::at_m, Position(), "")
-          .Optional("normal", &T::normal, Vector<3>(-1, 1), "")
+          .Optional("normal", &T::normal, Vector<3>(-1.01, 1.01), "")
           .Optional("sensor_sets", &T::sensor_sets, ListOf(WithPlace(Name()), 0, kMaxSets), "")
           .format();
   using F = FrameEntry;
