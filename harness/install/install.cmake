@@ -28,6 +28,7 @@ set_target_properties(prehend_grammar PROPERTIES EXPORT_NAME grammar)
 set_target_properties(prehend_math PROPERTIES EXPORT_NAME math)
 install(TARGETS prehend_grammar prehend_math EXPORT prehend ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 file(GLOB interface RELATIVE ${PROJECT_SOURCE_DIR} grammar/*.h grammar/base/*.h grammar/program/*.h)
+list(REMOVE_ITEM interface grammar/watch_drawing.h)  # drawings are tests of grammars, for the program
 foreach(header ${interface} grammar/compile/compile.h)
   cmake_path(GET header PARENT_PATH parent)
   install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/prehend/${parent})

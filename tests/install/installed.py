@@ -101,6 +101,13 @@ class Installed(unittest.TestCase):
         if "avx2" in pathlib.Path("/proc/cpuinfo").read_text():
             self.assertEqual(said, run(build / "watch", cwd=self.elsewhere))
 
+    def test_headers_include_what_is_installed(self):
+        include = self.prefix / "include"
+        lines = [f'#include "{header.relative_to(include)}"' for header in sorted(include.rglob("*.h"))]
+        self.assertGreater(len(lines), 10)
+        subprocess.run(["c++", "-std=c++20", "-fsyntax-only", "-x", "c++", "-I", include, "-I", include / "prehend", "-isystem",
+                        "/usr/include/eigen3", "-"], input="\n".join(lines), text=True, check=True, cwd=self.elsewhere)
+
     def test_a_stranger_links_the_episode_library(self):
         build, node = self.elsewhere / "build", self.elsewhere / "node"
         shutil.copytree(HERE / "node", node)
