@@ -192,17 +192,18 @@ def doubts(entities, poses):
             told.append(f"'{one}' is said to be fixed, and moves by {way:.2f} m\n  hint: fixed is only what never moves")
     if told:
         return "\n".join(told)
-    for one, at in seen.items():
-        if is_hand[one] or sizes[one].get("fixed") or "size_m" not in sizes[one]:
-            continue
-        begin, low = at[0], at[0][2] - sizes[one]["size_m"][2] / 2
-        others = [(other, there[0]) for other, there in seen.items() if other != one]
-        if any(is_hand[other] and np.linalg.norm(there - begin) < 0.2 for other, there in others):
+    hands = np.array([at[0] for one, at in seen.items() if is_hand[one]]).reshape(-1, 3)
+    solid = [one for one in seen if "size_m" in sizes[one] and not is_hand[one]]
+    places = np.array([seen[one][0] for one in solid]).reshape(-1, 3)
+    edges = np.array([sizes[one]["size_m"] for one in solid], dtype=float).reshape(-1, 3)
+    tops, half_ways = places[:, 2] + edges[:, 2] / 2, np.hypot(edges[:, 0], edges[:, 1]) / 2
+    for place, one in enumerate(solid):
+        if sizes[one].get("fixed") or (np.linalg.norm(hands - places[place], axis=1) < 0.2).any():
             continue  # held, perhaps
-        below = [there[2] + sizes[other]["size_m"][2] / 2 for other, there in others
-                 if "size_m" in sizes[other] and not is_hand[other]
-                 and (np.abs(there - begin)[:2] < np.hypot(*sizes[other]["size_m"][:2]) / 2).all()]
-        if not any(abs(top - low) < 0.1 for top in below):
+        low = places[place][2] - edges[place][2] / 2
+        near = np.abs(tops - low) < 0.1
+        near[place] = False
+        if not (near & (np.abs(places - places[place])[:, :2] < half_ways[:, None]).all(axis=1)).any():
             told.append(f"nothing is below '{one}' at the begin, whose lowest point is {low:.3g} m high\n  hint: name what it "
                         "stands on ({'class': 'Table', 'fixed': True, 'size_m': .., 'at_m': ..}); z is up, in metres")
     return "\n".join(told)
