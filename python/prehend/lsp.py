@@ -23,10 +23,13 @@ TOKEN = re.compile(r'(?P<comment>#[^\n]*)|(?P<text>"[^"\n]*"?)|(?P<number>\.?\d[
 
 def reference():
     """Name -> (how it is written, what it means): the tables of docs/grammar-language.md."""
-    meanings = {}
+    meanings, table = {}, ""
     for line in pathlib.Path(__file__).with_name("grammar-language.md").read_text(encoding="utf-8").splitlines():
         cells = [cell.strip().replace("\\|", "|") for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
         if len(cells) < 2 or not cells[0].startswith("`"):
+            table = cells[0] if len(cells) > 1 and cells[0].strip("-") else table
+            continue
+        if table == "grammar":  # what a file is called is no word of the language
             continue
         unit = f" [{cells[1]}]" if len(cells) == 3 and not cells[1].startswith("`") else ""
         for written in re.findall(r"`([^`]+)`", cells[0]):
@@ -57,11 +60,23 @@ class Grammar:
                 self.defined.setdefault(following[1], following)
 
     def at(self, line, column):
-        """The token there, or that ends there."""
-        for token in self.tokens:
-            if token[2] == line and token[3] <= column <= token[3] + len(token[1]):
-                return token
-        return None
+        """The token there, or that ends there: rather a name than a sign."""
+        there = [one for one in self.tokens if one[2] == line and one[3] <= column <= one[3] + len(one[1])]
+        return next((one for one in there if one[0] == "name"), there[-1] if there else None)
+
+    def column(self, line, character):
+        """What an editor counts in units of UTF-16, in characters."""
+        words = self.lines[line] if line < len(self.lines) else ""
+        return len(words.encode("utf-16-le", "surrogatepass")[:2 * character].decode("utf-16-le", "ignore"))
+
+    def range(self, line, begin, end):
+        """Of characters, in units of UTF-16."""
+        def units(column):
+            return len(self.lines[line][:column].encode("utf-16-le", "surrogatepass")) // 2 + max(column - len(self.lines[line]), 0)
+        return {"start": {"line": line, "character": units(begin)}, "end": {"line": line, "character": units(end)}}
+
+    def span(self, token):
+        return self.range(token[2], token[3], token[3] + len(token[1]))
 
     def item(self, line):
         """First and last line of the definition that is there, and its tokens."""
@@ -85,14 +100,6 @@ class Grammar:
             last += 1
         comment = " ".join(line.lstrip("# ") for line in self.lines[first:self.defined[name][2]])
         return "```grammar\n" + "\n".join(self.lines[self.defined[name][2]:last + 1]) + "\n```\n" + comment
-
-
-def _range(line, begin, end):
-    return {"start": {"line": line, "character": begin}, "end": {"line": line, "character": end}}
-
-
-def _span(token):
-    return _range(token[2], token[3], token[3] + len(token[1]))
 
 
 class Server:
@@ -137,7 +144,7 @@ class Server:
             end = token[3] + len(token[1]) if token else len(before) + 1
             if file != grammar.file:
                 message = f"{file}:{line}: {message}"
-            shown.append({"range": _range(where, len(before), max(end, len(before) + 1)), "severity": 2 if is_warning else 1,
+            shown.append({"range": grammar.range(where, len(before), max(end, len(before) + 1)), "severity": 2 if is_warning else 1,
                           "source": "prehend", "message": message + (f"\nhint: {hint}" if hint else "")})
         self.send("textDocument/publishDiagnostics", {"uri": uri, "diagnostics": shown})
 
@@ -163,15 +170,18 @@ class Server:
         self.publish(uri)
 
     def did_close(self, params):
-        self.open.pop(params["textDocument"]["uri"], None)
+        uri = params["textDocument"]["uri"]
+        self.open.pop(uri, None)
+        self.send("textDocument/publishDiagnostics", {"uri": uri, "diagnostics": []})
 
     def _asked(self, params):
         grammar, place = self.open[params["textDocument"]["uri"]], params["position"]
-        return grammar, place["line"], grammar.at(place["line"], place["character"])
+        column = grammar.column(place["line"], place["character"])
+        return grammar, place["line"], column, grammar.at(place["line"], column)
 
     def completion(self, params):
-        grammar, line, token = self._asked(params)
-        before = grammar.lines[line][:params["position"]["character"]] if line < len(grammar.lines) else ""
+        grammar, line, column, _ = self._asked(params)
+        before = grammar.lines[line][:column] if line < len(grammar.lines) else ""
         if "#" in before:
             return []
         if re.match(r"\s*use\s+\w*$", before):
@@ -193,28 +203,28 @@ class Server:
         return list(found.values())
 
     def hover(self, params):
-        grammar, line, token = self._asked(params)
+        grammar, line, _, token = self._asked(params)
         if token is None or token[0] != "name" or token[1] in grammar.roles(line):
             return None
         for other in self.used(grammar).values():
             if token[1] in other.defined:
-                return {"contents": {"kind": "markdown", "value": other.described(token[1])}, "range": _span(token)}
+                return {"contents": {"kind": "markdown", "value": other.described(token[1])}, "range": grammar.span(token)}
         meanings = self.words.get(token[1])
         text = "\n\n".join(f"`{written}`: {meaning}" for written, meaning in meanings or [])
-        return {"contents": {"kind": "markdown", "value": text}, "range": _span(token)} if text else None
+        return {"contents": {"kind": "markdown", "value": text}, "range": grammar.span(token)} if text else None
 
     def definition(self, params):
-        grammar, line, token = self._asked(params)
+        grammar, line, _, token = self._asked(params)
         role = next((one for one in grammar.item(line) if token and token[1] in grammar.roles(line) and one[1] == token[1]), None)
         if role:
-            return {"uri": params["textDocument"]["uri"], "range": _span(role)}
+            return {"uri": params["textDocument"]["uri"], "range": grammar.span(role)}
         for other in self.used(grammar).values():
             if token and token[1] in other.defined:
-                return {"uri": pathlib.Path(other.file).as_uri(), "range": _span(other.defined[token[1]])}
+                return {"uri": pathlib.Path(other.file).as_uri(), "range": other.span(other.defined[token[1]])}
         return None
 
     def rename(self, params):
-        grammar, line, token = self._asked(params)
+        grammar, line, _, token = self._asked(params)
         new = params["newName"]
         if token is None or not re.fullmatch(r"[A-Za-z_]\w*", new) or new in WORDS:
             raise ValueError(f"found '{new}', wanted another name: letters, digits and '_', no word of the language")
@@ -226,7 +236,7 @@ class Server:
             raise ValueError(f"'{new}' is there already")
         tokens = grammar.item(line) if is_role else grammar.tokens
         # A role may be called like something that is defined elsewhere.
-        edits = [{"range": _span(one), "newText": new} for one in tokens if one[:2] == ("name", token[1])
+        edits = [{"range": grammar.span(one), "newText": new} for one in tokens if one[:2] == ("name", token[1])
                  and (is_role or token[1] not in grammar.roles(one[2]))]
         return {"changes": {params["textDocument"]["uri"]: edits}}
 
@@ -286,7 +296,14 @@ def main(arguments):
                 return 1
             if line.lower().startswith(b"content-length:"):
                 length = int(line[15:])
-        message = json.loads(source.read(length))
+        try:
+            message = json.loads(source.read(length))
+        except ValueError as error:
+            write({"id": None, "error": {"code": -32700, "message": str(error)}})
+            continue
+        if not isinstance(message, dict):
+            write({"id": None, "error": {"code": -32600, "message": "wanted one object"}})
+            continue
         if message.get("method") == "exit":
             return 0 if server.is_shut else 1
         answer = server.answer(message)

@@ -84,7 +84,7 @@ test("completion, hover, definition", async () => {
   const { uri } = await opened("help.grammar", TEXT);
   const items = await ask("completion", uri, at(TEXT, "height", 3));
   const found = new Map(items.map((item) => [item.label, item]));
-  for (const label of ["height", "grasping", "at_mouth", "near", "cup", "lasting", "contact"]) assert.ok(found.has(label), label);
+  for (const label of ["height", "grasping", "at_mouth", "near", "cup", "lasting", "gap"]) assert.ok(found.has(label), label);
   assert.match(found.get("height").documentation.value, /above the world's origin/);
   assert.match(found.get("at_mouth").documentation.value, /where one drinks/);
   const uses = await ask("completion", uri, at(TEXT, "use grasp", 6));
@@ -117,6 +117,27 @@ test("rename, layout", async () => {
   await changed(uri, TEXT.replaceAll(" > ", ">").replaceAll("  ", "\t"));
   const [edit] = await ask("formatting", uri, undefined, { options: { tabSize: 2, insertSpaces: true } });
   assert.equal(edit.newText, TEXT);
+});
+
+test("columns are those of UTF-16; a name begins behind its bracket; the words of a table of files are none", async () => {
+  const text = 'grammar wide\ndefine near(a: Hand, b: Thing) = distance(a, b) < 5 cm\n' +
+    'event a(hand: Hand, o: Thing)\n  while sensor_set(hand, "D\u00E4u\u{1F600}\u{1F600}", o) and near(hand, o) and speed(hand) > 3 s\n';
+  const { uri, diagnostics } = await opened("wide.grammar", text);
+  assert.deepEqual(diagnostics.at(-1).range.start, at(text, "> 3 s"));
+  await changed(uri, text.replace("3 s", "3 m/s"));
+  const { changes } = await ask("rename", uri, at(text, "near(a"), { newName: "closer" });
+  assert.deepEqual(changes[uri].map(({ range }) => range.start), [at(text, "near(a"), at(text, "near(hand")]);
+  assert.deepEqual((await ask("hover", uri, at(text, "near(hand"))).range.end, at(text, "near(hand", 4));
+  assert.deepEqual((await ask("definition", uri, at(text, "hand, o) and speed"))).range.start, at(text, "hand: Hand"));
+  const items = new Map((await ask("completion", uri, at(text, "speed(hand"))).map((item) => [item.label, item]));
+  assert.ok(!items.has("contact") && !items.has("original_") && !items.has("tabletop"));
+  assert.match(items.get("force").detail, /force\(a, b\) \[N\]/);
+});
+
+test("what is no request is answered, and the next one, too", async () => {
+  for (const body of ["[1]", "{", '"x"']) server.stdin.write(`Content-Length: ${body.length}\r\n\r\n${body}`);
+  const { uri } = await opened("later.grammar", TEXT);
+  assert.ok(await ask("hover", uri, at(TEXT, "height", 1)));
 });
 
 test("a thousand random edits: it lives, and answers within 50 ms of processor time", async () => {
