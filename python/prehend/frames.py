@@ -24,6 +24,13 @@ def _plain(value):
     raise TypeError(f"{type(value).__name__} is no number, text, list or dict")
 
 
+def by_name(values, what):
+    """A dict, empty if there is none."""
+    if values is not None and not isinstance(values, dict):
+        wrong(f"{what}: found a {type(values).__name__}, wanted a dict")
+    return values or {}
+
+
 def to_json(value):
     """Numbers that are none are null."""
     try:
@@ -96,7 +103,7 @@ def _times(t, rate_hz, frames):
     if (t is None) == (rate_hz is None):
         wrong("wanted either t or rate_hz", "t=seconds of each frame, or rate_hz=frames per second")
     if rate_hz is not None:
-        t = np.arange(frames) / number(rate_hz, "rate_hz", 0.1, 1e5, "frames per second, 0.1 to 100000", FrameError)
+        t = np.arange(frames) / number(rate_hz, "rate_hz", 0.1, _FINE, f"frames per second, 0.1 to {_FINE}", FrameError)
     t = _number_array(t, "t")
     if len(t) != frames:
         wrong(f"t has {len(t)} times, and there are {frames} frames", "one time per frame")
@@ -111,7 +118,7 @@ def _times(t, rate_hz, frames):
     usual = float(np.median(steps)) if frames > 1 else 1.0
     if rate_hz is None and frames > 9 and (np.round(steps) == steps).all() and np.mean(steps == 1) > 0.9:
         wrong("t are whole numbers that grow by 1 each: they look like frame numbers", "seconds: t / frames_per_second; or rate_hz")
-    if usual > 2:
+    if rate_hz is None and usual > 2:
         unit, _, parts = next(one for one in _PARTS if usual < one[1])
         wrong(f"frames are {usual:g} s apart", f"t is in seconds; divide {unit} by {parts}")
     if abs(t[0]) > 1e6:
@@ -212,12 +219,12 @@ def doubts(entities, poses):
 def make(frames, *, entities, t=None, rate_hz=None, grips=None, touches=None, name="episode",
          grammar="pick_and_place_from_motion", bridge_s=0.1):
     """See `prehend.episode`."""
-    given = touches or {}
+    grips, given = by_name(grips, "grips"), by_name(touches, "touches")
     if isinstance(frames, pd.DataFrame):
         if t is not None or rate_hz is not None:
             wrong("a table has its times in the column 't'", "leave t and rate_hz away")
         t, poses, table_grips, table_touches = _of_table(frames)
-        grips, touches = {**table_grips, **(grips or {})}, {**table_touches, **given}
+        grips, touches = {**table_grips, **grips}, {**table_touches, **given}
         count = len(t)
     elif isinstance(frames, dict):
         nothing = np.zeros(0, dtype=bool)
@@ -241,7 +248,7 @@ def make(frames, *, entities, t=None, rate_hz=None, grips=None, touches=None, na
     warn(doubts(entities, {one: array for one, (array, _) in poses.items()}), DoubtfulFrames)
     columns = [(names.index(one), array, mentioned) for one, (array, mentioned) in poses.items()]
     held = []
-    for hand, values in (grips or {}).items():
+    for hand, values in grips.items():
         if hand not in entities:
             wrong(f"grips: no entity is called '{hand}'", f"known: {', '.join(names)}")
         held.append((names.index(hand), _number_array(values, f"grips of '{hand}'")))

@@ -284,6 +284,8 @@ class Monitor:
 
     def __init__(self, grammar: Grammar, entities: dict, ticks_per_second: int = 10_000, bridge_s: float = 0.1,
                  name: str = "live"):
+        if not isinstance(grammar, Grammar):
+            wrong(f"grammar: found a {type(grammar).__name__}, wanted a Grammar", "prehend.Grammar(..).monitor(entities)")
         if number(ticks_per_second, "ticks_per_second", 1, wanted="a whole number", kind=FrameError) % 1:
             wrong(f"ticks_per_second: found {ticks_per_second!r}, wanted a whole number")
         line, self._standing = frames.first_line(entities, ticks_per_second, name, grammar.name, bridge_s=bridge_s)
@@ -314,6 +316,8 @@ class Monitor:
             Events that became certain: event, its roles, begin_s, end_s, decided_s, open_end.
         """
         tick = self._tick(t)
+        if isinstance(touches, (str, dict)) or not hasattr(touches, "__iter__"):
+            wrong(f"touches: found a {type(touches).__name__}, wanted a list of pairs", "[('cup', 'table')]")
         if not isinstance(poses, dict):
             wrong(f"poses: found a {type(poses).__name__}, wanted a dict by entity", "{'cup': (x, y, z)}")
         samples = {one: self._sample(one, pose) for one, pose in poses.items()}
@@ -326,7 +330,7 @@ class Monitor:
             warn(doubts, DoubtfulFrames)
             self._near = [] if doubts else None
         line = {"tick": tick, "samples": samples,
-                "hands": {hand: grip if isinstance(grip, dict) else {"trigger": grip} for hand, grip in (grips or {}).items()},
+                "hands": {hand: grip if isinstance(grip, dict) else {"trigger": grip} for hand, grip in frames.by_name(grips, "grips").items()},
                 "touches": [self._touch(one) for one in touches]}
         found = self._monitor.take(frames.to_json(line))
         self._last, self._t = tick, t
