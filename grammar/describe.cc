@@ -211,8 +211,9 @@ GrammarDescription Describe(const Program& program) {
     const Rule& rule = program.rules[id];
     const auto* looks_back = rule.If<UntilSinceRule>();
     const Approach* approach = ApproachOf(rule);
+    const double waits_s = rule.TriesEachBegin() ? rule.As<FromToRule>().within_s : 0;
     description.history_s =
-        std::max(description.history_s, (looks_back != nullptr ? looks_back->back_s : 0) +
+        std::max(description.history_s, (looks_back != nullptr ? looks_back->back_s : waits_s) +
                                             (approach != nullptr ? approach->looks_around_s() : 0) +
                                             rule.looks_around_s);
     if (rule.form() == Form::kTouching || rule.hidden) continue;

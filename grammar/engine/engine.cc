@@ -235,6 +235,8 @@ bool Engine::MayRest(const RuleInstance& instance) {
       // Nobody would tell that a part goes on, so that it may still begin there.
       return !rule.referenced || instance.known > history_.now();
     case Form::kFromTo:
+      if (instance.open && rule.TriesEachBegin())
+        return false;  // its frames may be asked for again
       // What must not come may still come at the deadline; what should have come is too late after
       // it.
       if (instance.open && TicksOf(instance).within >= 0) {

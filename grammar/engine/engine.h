@@ -129,7 +129,9 @@ class Engine final {
   /// The oldest frame that it may still ask for.
   FrameNumber OldestNeeded(const RuleInstance& instance) const {
     // When it is known that nothing bridges a gap, values at the frame of the gap may be asked for.
-    return instance.in_gap ? instance.gap.frame : instance.next;
+    if (instance.in_gap) return instance.gap.frame;
+    return instance.open && RuleOf(instance).TriesEachBegin() ? instance.begin.frame + 1
+                                                              : instance.next;
   }
 
   // Waiting for others (grammar/engine/engine.cc).
@@ -229,6 +231,7 @@ class Engine final {
   bool StepRun(RuleInstance& instance, FrameNumber frame, Kleene truth);
   bool StepRest(RuleInstance& instance, FrameNumber frame);
   bool StepFromTo(RuleInstance& instance, FrameNumber frame);
+  bool GiveUp(RuleInstance& instance);
   bool MeetDeadline(RuleInstance& instance, Moment now);
   bool StepUntil(RuleInstance& instance, FrameNumber frame);
 

@@ -159,9 +159,9 @@ void Engine::UpdateKnown(RuleInstance& instance) {
     // What is too long is none, but what waits with `each` may take its place.
     const auto* from_to = instance.If<FromToState>();
     if (TicksOf(instance).IsTooLong(AtLeastLasts(instance)))
-      instance.known = from_to == nullptr || from_to->waiting.empty()
-                           ? instance.next
-                           : from_to->waiting.front().frame;
+      instance.known = from_to == nullptr         ? instance.next
+                       : from_to->waiting.empty() ? OldestNeeded(instance)
+                                                  : from_to->waiting.front().frame;
   }
   if (rule.form() == Form::kUntilSince && rule.referenced && instance.next > history_.first()) {
     // A later interval ends after the last frame seen and reaches back no further than its rule

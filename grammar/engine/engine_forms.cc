@@ -34,9 +34,8 @@ bool Engine::StepFrame(RuleInstance& instance) {
     case Form::kFromTo: {
       const bool was_open = instance.open;
       decided = StepFromTo(instance, instance.next);
-      if (was_open && !instance.open)
-        // The begin of the next run was not asked for in this frame, so no change would wake it.
-        instance.by_itself = true;
+      // The begin of the next run was not asked for in this frame, so no change would wake it.
+      if (was_open && !instance.open) instance.by_itself = true;
       break;
     }
     case Form::kUntilSince:
@@ -259,17 +258,17 @@ bool Engine::StepFromTo(RuleInstance& instance, FrameNumber frame) {
     const Kleene closes = evaluator_.Truth(rule.to, view);
     if (closes == Kleene::kTrue && rule.absence) {
       Note(instance, fate::Came{}, {instance.begin, history_.At(frame)});
-      instance.open = false;
+      return GiveUp(instance);
     }
-    if (closes == Kleene::kTrue) return !instance.open || Close(instance, history_.At(frame));
+    if (closes == Kleene::kTrue) return Close(instance, history_.At(frame));
     const Kleene holds = rule.during == kNone ? Kleene::kTrue : evaluator_.Truth(rule.during, view);
     if (holds == Kleene::kFalse && !rule.or_drop) return Close(instance, history_.At(frame));
     if (closes == Kleene::kUnknown || holds == Kleene::kUnknown) return false;
     if (holds == Kleene::kFalse) {
       Note(instance, fate::Dropped{frame}, {instance.begin, history_.At(frame)});
-      instance.open = false;
+      return GiveUp(instance);
     }
-    if (!rule.each || !instance.open) return true;
+    if (!rule.each) return true;
     const Kleene opens = evaluator_.Truth(rule.from, view);
     if (opens == Kleene::kTrue) instance.As<FromToState>().waiting.PushBack() = history_.At(frame);
     return opens != Kleene::kUnknown;
@@ -293,6 +292,14 @@ bool Engine::StepFromTo(RuleInstance& instance, FrameNumber frame) {
   if (opens == Kleene::kFalse) return true;
   if (rule.each) instance.As<FromToState>().waiting.Clear();
   return opens == Kleene::kTrue && anchored && Open(instance, frame);
+}
+
+// The open run is none. If it can be another one that began while it waited, the frames after its
+// begin are stepped again.
+bool Engine::GiveUp(RuleInstance& instance) {
+  instance.open = false;
+  if (RuleOf(instance).TriesEachBegin()) instance.next = instance.begin.frame;
+  return true;
 }
 
 // An open run whose deadline has passed: without the end that it waited for it is dropped, and with

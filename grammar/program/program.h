@@ -268,6 +268,11 @@ struct Rule {
   const Part* If() const {
     return std::get_if<Part>(&of_form);
   }
+  /// `without` that may speak of its begin: what came for one begin need not come for the next.
+  bool TriesEachBegin() const {
+    const auto* from_to = If<FromToRule>();
+    return from_to != nullptr && from_to->absence && !anchors.empty();
+  }
 
   double lasting_s = 0;
   double lasting_most_s = -1;  ///< negative: as long as it likes

@@ -202,7 +202,7 @@ class Meaning:
                 deadline = ticks[i] + ceil(within)
                 comes = j < late or late < n and ticks[late] <= ticks[i] + within and off[late] is True
                 waited = not comes and ticks[late] >= deadline
-                return (late, self.frames(i, late, deadline)) if waited else (max(j, i) + 1, None)
+                return (late, self.frames(i, late, deadline)) if waited else (i + 1, None)
             in_time = j < late or late == n and self.end <= ticks[i] + within
             kept = in_time and ("or drop" not in rule or j < n and off[j] is True)
             return j + (in_time and j < n), kept and self.frames(i, j)

@@ -129,8 +129,9 @@ std::vector<Timed> FromWithout(const Stream& from, const Anchored& without, cons
     const bool waited = ticks[end] >= deadline;
     const bool in_time = static_cast<double>(ticks[end] - ticks[i]) <= within;
     const bool just_in_time = waited && end < frames && in_time && comes[end];
-    if (waited && !just_in_time) found.push_back({{i, end}, {ticks[i], deadline}});
-    i = end - (waited && !just_in_time ? 1 : 0);
+    if (!waited || just_in_time) continue;
+    found.push_back({{i, end}, {ticks[i], deadline}});
+    i = end - 1;
   }
   return found;
 }
