@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Needs: no absence of what may have happened out of sight, and nothing false there that must be
-// known. Algorithm: which roles a rule sees by
-// poses follows from its nodes and from the rules it refers to, which the schedule has before it.
-// `during` gets a condition for each role; a composition gets another absence, of a hidden rule
-// that holds while an entity is lost; what `known` denies of a rule gets "or it is lost". Tested by
+// known. Algorithm: which roles a rule sees by poses, and in which windows of time, follows from
+// its nodes and from the rules it refers to, which the schedule has before it. `during` gets a
+// condition for each; a composition gets another absence, of a hidden rule that holds while an
+// entity is lost; what `known` denies of a rule gets "or it is lost". Tested by
 // tests/grammar/engine/tracking_test.cc
 #include <limits>
 #include <map>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "grammar/analysis/analyze_dependencies.h"
@@ -15,7 +17,11 @@
 namespace prehend::grammar {
 namespace {
 
-using RoleSet = unsigned;  // a bit for each role of a rule
+// One in another, the outermost first: an operator over each of them, and how long it is.
+using WindowChain = std::vector<std::pair<Op, double>>;
+// A role of a rule that is looked at, and in which windows around the frame; none: in it.
+using OneSight = std::pair<int, WindowChain>;
+using Sights = std::set<OneSight>;
 
 class Sight {
  public:
@@ -33,51 +39,66 @@ class Sight {
   }
 
  private:
-  RoleSet OfRule(const Rule& rule) const {
-    RoleSet roles = OfNode(rule, rule.requirement);
-    for (const NodeId node : ConditionsOf(rule)) roles |= OfNode(rule, node);
-    if (const Approach* approach = ApproachOf(rule))
-      roles |= OfNode(rule, approach->signal) | OfNode(rule, approach->motion);
-    if (const auto* any = rule.If<AnyRule>(); any != nullptr && any->one != kNone)
-      roles |= (1U << rule.roles.size()) - 1;  // the nearest
-    for (const Reference& reference : rule.references) roles |= OfReference(reference);
-    return roles;
-  }
-
-  RoleSet OfReference(const Reference& reference) const {
-    RoleSet roles = 0;
-    for (std::size_t i = 0; i < reference.roles.size(); ++i) {
-      const bool is_named = reference.roles[i] != kNone;
-      if (is_named && (seen_[reference.rule] >> i & 1U) != 0) roles |= 1U << reference.roles[i];
+  Sights OfRule(const Rule& rule) const {
+    Sights looks = OfNode(rule, rule.requirement);
+    for (const NodeId node : ConditionsOf(rule)) Add(looks, rule, node);
+    if (const Approach* approach = ApproachOf(rule)) {
+      Add(looks, rule, approach->signal);
+      Add(looks, rule, approach->motion);
     }
-    return roles;
+    if (const auto* any = rule.If<AnyRule>(); any != nullptr && any->one != kNone)
+      for (std::size_t role = 0; role < rule.roles.size(); ++role)  // the nearest
+        looks.insert({static_cast<int>(role), {}});
+    for (const Reference& reference : rule.references) looks.merge(OfReference(reference));
+    return looks;
   }
 
-  RoleSet OfNode(const Rule& rule, NodeId index) const {
-    if (index == kNone) return 0;
+  Sights OfReference(const Reference& reference) const {
+    Sights looks;
+    for (const auto& [role, windows] : seen_[reference.rule]) {
+      const int named = reference.roles[static_cast<std::size_t>(role)];
+      if (named != kNone) looks.insert({named, windows});
+    }
+    return looks;
+  }
+
+  Sights OfNode(const Rule& rule, NodeId index) const {
+    Sights looks;
+    Add(looks, rule, index);
+    return looks;
+  }
+
+  void Add(Sights& looks, const Rule& rule, NodeId index, WindowChain windows = {}) const {
+    if (index == kNone) return;
     const Node& node = program_.nodes[index];
-    RoleSet roles = 0;
-    for (const int role : node.roles)
-      if (role != kNone && RowOf(node.op).AsksPoses()) roles |= 1U << role;
-    if (node.op == Op::kOwns) roles |= 1U << node.roles[0];
+    const Operator& row = RowOf(node.op);
+    if (row.HasWindow()) windows.emplace_back(row.in_window ? Op::kMean : Op::kRate, node.number);
+    for (const int role : node.roles) {
+      const bool looks_at = row.AsksPoses() || node.op == Op::kOwns || node.op == Op::kTouchSpeed;
+      if (role != kNone && looks_at) looks.insert({role, windows});
+    }
     if (node.op == Op::kHolds || node.op == Op::kOwns)
-      roles |= OfReference(rule.references[static_cast<std::size_t>(node.slot)]);
+      looks.merge(OfReference(rule.references[static_cast<std::size_t>(node.slot)]));
     if (node.op == Op::kAtBegin)
-      roles |= OfNode(rule, rule.anchors[static_cast<std::size_t>(node.slot)]);
-    for (const NodeId arg : node.args) roles |= OfNode(rule, arg);
-    return roles;
+      Add(looks, rule, rule.anchors[static_cast<std::size_t>(node.slot)], windows);
+    for (const NodeId arg : node.args) Add(looks, rule, arg, windows);
   }
 
-  NodeId Tracked(const Rule& rule, int role) {
+  NodeId Tracked(const Rule& rule, const OneSight& look) {
+    const auto& [role, windows] = look;
     const NodeId position = program_.nodes.push_back({.op = Op::kPosition, .roles = {role, kNone}});
-    const NodeId height =
+    NodeId height =
         program_.nodes.push_back({.op = Op::kHeight, .args = {position, kNone, kNone, kNone}});
+    for (auto window = windows.rbegin(); window != windows.rend(); ++window)
+      height = program_.nodes.push_back(
+          {.op = window->first, .args = {height, kNone, kNone, kNone}, .number = window->second});
     const NodeId lowest = program_.nodes.push_back(
         {.op = Op::kNumber, .number = -std::numeric_limits<double>::infinity()});
     const NodeId tracked =
         program_.nodes.push_back({.op = Op::kGreater, .args = {height, lowest, kNone, kNone}});
     program_.notes.resize(program_.nodes.size());
-    program_.notes[tracked] = {.text = "{" + std::to_string(role) + "} is tracked",
+    program_.notes[tracked] = {.text = "{" + std::to_string(role) + "} is tracked" +
+                                       (windows.empty() ? "" : " in the window around"),
                                .dimension = kPlain,
                                .file = rule.file,
                                .place = rule.place};
@@ -99,11 +120,9 @@ class Sight {
     program_.notes.resize(program_.nodes.size());
     program_.notes[made] = program_.notes[node];
     const Rule& rule = program_.rules[index];
-    const RoleSet roles = is_doubted ? OfNode(rule, node) : 0;
-    for (int role = 0; role < kMaxRoles; ++role) {
-      if ((roles >> role & 1U) == 0) continue;
+    for (const OneSight& look : is_doubted ? OfNode(rule, node) : Sights()) {
       const NodeId lost = program_.nodes.push_back(
-          {.op = Op::kNot, .args = {Tracked(rule, role), kNone, kNone, kNone}});
+          {.op = Op::kNot, .args = {Tracked(rule, look), kNone, kNone, kNone}});
       made = program_.nodes.push_back({.op = Op::kOr, .args = {made, lost, kNone, kNone}});
     }
     return made;
@@ -124,10 +143,8 @@ class Sight {
   void RequireOfFromTo(RuleId index) {
     Rule& rule = program_.rules[index];
     auto& form = rule.As<FromToRule>();
-    const RoleSet roles = OfNode(rule, form.to);
-    for (int role = 0; role < kMaxRoles; ++role) {
-      if ((roles >> role & 1U) == 0) continue;
-      const NodeId tracked = Tracked(rule, role);
+    for (const OneSight& look : OfNode(rule, form.to)) {
+      const NodeId tracked = Tracked(rule, look);
       form.during = form.during == kNone
                         ? tracked
                         : program_.nodes.push_back(
@@ -142,11 +159,9 @@ class Sight {
       const auto& composition = program_.rules[index].As<ComposeRule>();
       const auto slot =
           static_cast<std::size_t>(composition.parts[static_cast<std::size_t>(absence.part)]);
-      const RoleSet roles = OfReference(program_.rules[index].references[slot]);
-      for (int role = 0; role < kMaxRoles; ++role) {
-        if ((roles >> role & 1U) == 0) continue;
+      for (const auto& [role, windows] : OfReference(program_.rules[index].references[slot])) {
         const RuleRole who = program_.rules[index].roles[static_cast<std::size_t>(role)];
-        const RuleId lost = WhileLost(who, program_.rules[index]);
+        const RuleId lost = WhileLost(who, windows, program_.rules[index]);
         Rule& rule = program_.rules[index];
         auto& whole = rule.As<ComposeRule>();
         const int part = whole.AddPart(static_cast<int>(rule.references.size()));
@@ -158,8 +173,8 @@ class Sight {
 
   // The hidden rules "it is tracked" and, as an event is false where nobody knows that it holds,
   // "not that".
-  RuleId WhileLost(const RuleRole& who, const Rule& user) {
-    const auto [entry, is_new] = lost_.try_emplace(who.class_name);
+  RuleId WhileLost(const RuleRole& who, const WindowChain& windows, const Rule& user) {
+    const auto [entry, is_new] = lost_.try_emplace({who.class_name, windows});
     if (!is_new) return entry->second;
     Rule tracked{.name = "tracked",
                  .file = user.file,
@@ -168,7 +183,7 @@ class Sight {
                  .hidden = true,
                  .of_form = WhileRule()};
     Rule lost = tracked;
-    tracked.As<WhileRule>().condition = Tracked(tracked, 0);
+    tracked.As<WhileRule>().condition = Tracked(tracked, {0, windows});
     lost.name = "lost";
     const NodeId holds = program_.nodes.push_back({.op = Op::kHolds, .slot = 0});
     lost.As<WhileRule>().condition =
@@ -181,8 +196,8 @@ class Sight {
   }
 
   Program& program_;
-  IdVector<RuleId, RoleSet> seen_;  // which roles a rule knows by poses
-  std::map<std::string, RuleId> lost_;
+  IdVector<RuleId, Sights> seen_;  // which roles a rule knows by poses
+  std::map<std::pair<std::string, WindowChain>, RuleId> lost_;
   std::vector<RuleId> made_;
 };
 

@@ -62,7 +62,6 @@ double Evaluator::SecondsBetween(FrameNumber early, FrameNumber late) const {
 std::optional<double> Evaluator::Rate(const Node& node, const View& view) const {
   const std::optional<Window> window = WindowAround(node, view.frame);
   if (!window) return std::nullopt;
-  if (window->early == window->late) return 0;
   const std::optional<double> before = Number(node.args[0], view.At(window->early));
   const std::optional<double> after = Number(node.args[0], view.At(window->late));
   if (!before || !after) return std::nullopt;
@@ -70,6 +69,7 @@ std::optional<double> Evaluator::Rate(const Node& node, const View& view) const 
       view.instance.entities, [&](int entity) { return entity >= 0 && history_.WasLost(entity); });
   for (FrameNumber at = window->early + 1; may_be_lost && at < window->late; ++at)
     if (std::isnan(Number(node.args[0], view.At(at)).value_or(0))) return kNotKnown;
+  if (window->early == window->late) return *after - *before;
   return (*after - *before) / SecondsBetween(window->early, window->late);
 }
 
@@ -77,8 +77,8 @@ std::optional<double> Evaluator::Rate(const Node& node, const View& view) const 
 std::optional<double> Evaluator::SpeedOver(const Node& node, const View& view) const {
   const std::optional<Window> window = WindowAround(node, view.frame);
   if (!window) return std::nullopt;
-  if (window->early == window->late) return 0;
   if (!AreSeenIn(*window, node, view)) return kNotKnown;
+  if (window->early == window->late) return 0;
   const int a = Entity(node, view, 0);
   const auto place = [&](FrameNumber frame) -> Vector3d {
     return node.op == Op::kSpeedOver ? history_.Look(a, frame).p_WB_m
@@ -173,8 +173,8 @@ Vector2d Evaluator::WayOn(const Node& node, const View& view, FrameNumber early,
 std::optional<double> Evaluator::DriftAlong(const Node& node, const View& view) const {
   const std::optional<Window> window = WindowAround(node, view.frame);
   if (!window) return std::nullopt;
-  if (window->early == window->late) return 0;
   if (!AreSeenIn(*window, node, view)) return kNotKnown;
+  if (window->early == window->late) return 0;
   const TouchPlace touch = TouchPlaceOf(node, view);
   const auto look = [&](int role, FrameNumber frame) -> const EntitySample& {
     return history_.Look(Entity(node, view, role), frame);
@@ -266,8 +266,8 @@ std::optional<double> Evaluator::Rotation(const Node& node, const View& view) co
 std::optional<double> Evaluator::Spin(const Node& node, const View& view) const {
   const std::optional<Window> window = WindowAround(node, view.frame);
   if (!window) return std::nullopt;
-  if (window->early == window->late) return 0;
   if (!AreSeenIn(*window, node, view)) return kNotKnown;
+  if (window->early == window->late) return 0;
   const auto turned = [&](FrameNumber early, FrameNumber late) {
     return Twist(FromVector(OrientationOn(node, view, early)).conjugate() *
                      FromVector(OrientationOn(node, view, late)),

@@ -171,6 +171,33 @@ TEST(NotTracked, ARuleIsUnknownOutOfSightForThoseWhoAskWhatIsKnown) {
   EXPECT_EQ(Held(from + "while low(cup) requires known not high(cup)\n", {Scene::kCup}), always);
 }
 
+// As far as its windows reach, one in another.
+TEST(NotTracked, ARuleIsOutOfSightInTheWholeWindowThatItLooksAt) {
+  const std::string rules =
+      "grammar t\ncondition fast(cup: Cup) while speed(cup, 100 ms) > 5 m/s\n"
+      "condition faster(cup: Cup) while median(speed(cup, 100 ms), 60 ms) > 5 m/s\n"
+      "condition moved(hand: Hand, cup: Cup) while fast(cup) and touching(hand, cup)\n"
+      "event e(hand: Hand, cup: Cup) ";
+  const std::pair<std::string, std::string> cases[] = {
+      {"while height(hand) < 1 m and known not fast(cup)", "0..250; 550..1000; "},
+      {"while height(hand) < 1 m and known not faster(cup)", "0..220; 580..1000; "},
+      {"while height(hand) < 1 m and known not moved(hand, cup)", "0..250; 550..1000; "},
+      {"while height(hand) < 1 m and not known not fast(cup)", "250..550; "},
+      {"from height(hand) < 1 m begins without fast(cup) begins within 250 ms", "0..250; "},
+      {"from height(hand) < 1 m begins without fast(cup) begins within 260 ms", ""},
+      {"from height(hand) < 1 m begins without speed(cup, 100 ms) > 5 m/s begins within 260 ms",
+       ""}};
+  for (const auto& [form, held] : cases)
+    EXPECT_EQ(Held(rules + form + "\n", {Scene::kCup}), held) << form;
+  const std::string between =
+      "grammar t\ncondition fast(cup: Cup) while speed(cup, 100 ms) > 5 m/s\n"
+      "condition soon(tray: Movable) from height(tray) < 1 m begins without height(tray) > 5 m "
+      "begins within 50 ms\n"
+      "event e(cup: Cup, tray: Movable) compose a: soon(tray), b: soon(tray) where a before b, "
+      "without fast(cup) between a and b\n";
+  EXPECT_EQ(Held(between, {Scene::kTray}), "0..550; ");
+}
+
 // Cup and tray are where the hand is, the cup first in the cast.
 TEST(NotTracked, WhoIsLostIsNotTheNearest) {
   const std::string rules =

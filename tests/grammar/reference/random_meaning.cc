@@ -100,31 +100,37 @@ class Meaning {
     return {};
   }
 
-  // Whether x must be tracked to see it.
-  bool NeedsSight(const Term& term) const {
-    const bool by_pose = term.kind == Kind::kHigh || term.kind == Kind::kRising ||
-                         term.kind == Kind::kOfWindow ||
-                         (term.kind == Kind::kRule && NeedsSight(rules_[term.which]));
-    return by_pose ||
-           std::ranges::any_of(term.args, [&](const Term& arg) { return NeedsSight(arg); });
+  // Where x is lost, or was or will be in a window of time that it looks at.
+  Stream OutOfSight(const Term& term) const {
+    Stream unseen(n_, false);
+    const auto value = [&](int i) {
+      return term.kind == Kind::kHigh     ? Height(i)
+             : term.kind == Kind::kRising ? Rate(i, term.window)
+                                          : OfWindow(i, term);
+    };
+    const bool by_pose =
+        term.kind == Kind::kHigh || term.kind == Kind::kRising || term.kind == Kind::kOfWindow;
+    for (int i = 0; by_pose && i < n_; ++i) unseen[i] = std::isnan(value(i));
+    if (term.kind == Kind::kRule) unseen = OutOfSight(rules_[term.which]);
+    for (const Term& arg : term.args) unseen = reference::Or(unseen, OutOfSight(arg));
+    return unseen;
   }
-  bool NeedsSight(const RandomRule& rule) const {
-    const auto needs = [&](bool has, const Term& term) { return has && NeedsSight(term); };
+  Stream OutOfSight(const RandomRule& rule) const {
+    std::vector<const Term*> asked;
     const bool is_form = rule.calls.empty();
-    return needs(is_form, rule.first) || needs(is_form && HasSecond(rule), rule.second) ||
-           needs(rule.has_during || rule.has_absence, rule.during) ||
-           needs(rule.has_requirement, rule.requirement) || needs(rule.is_confirmed, rule.by) ||
-           needs(rule.is_confirmed, rule.episode) || rule.approaches || rule.one_per ||
-           std::ranges::any_of(rule.calls, [&](const Term& call) { return NeedsSight(call); }) ||
-           std::ranges::any_of(rule.choices,
-                               [&](const auto& one) { return NeedsSight(one.second); });
+    if (is_form) asked.push_back(&rule.first);
+    if (is_form && HasSecond(rule)) asked.push_back(&rule.second);
+    if (rule.has_during || rule.has_absence) asked.push_back(&rule.during);
+    if (rule.has_requirement) asked.push_back(&rule.requirement);
+    if (rule.is_confirmed) asked.insert(asked.end(), {&rule.by, &rule.episode});
+    for (const Term& call : rule.calls) asked.push_back(&call);
+    for (const auto& [part, call] : rule.choices) asked.push_back(&call);
+    Stream unseen = rule.approaches || rule.one_per ? e_.lost : Stream(n_, false);
+    for (const Term* const term : asked) unseen = reference::Or(unseen, OutOfSight(*term));
+    return unseen;
   }
   static bool HasSecond(const RandomRule& rule) {
     return rule.has_second || rule.form != Form::kWhile;
-  }
-  // Frames in which that is not so.
-  Stream OutOfSight(const Term& term) const {
-    return NeedsSight(term) ? e_.lost : Stream(n_, false);
   }
 
   double Height(int frame) const {
@@ -138,7 +144,7 @@ class Meaning {
     int early = frame, late = frame;
     while (early > 0 && e_.ticks[early] > e_.ticks[frame] - half) --early;
     while (late + 1 < n_ && e_.ticks[late] < e_.ticks[frame] + half) ++late;
-    if (early == late) return 0;
+    if (early == late) return Height(late) - Height(early);
     for (int i = early; i <= late; ++i)
       if (e_.lost[i]) return Height(i);
     return (Height(late) - Height(early)) /
