@@ -195,24 +195,29 @@ void FindThreshold(Program& program, Node& node) {
   const double at_least = strict ? NextLarger(number.number) : number.number;
   const int as_named = Enter(program, {(*measured)[0], at_least});
   const int swapped = Enter(program, {(*measured)[1], at_least});
-  if (as_named != kNone && swapped != kNone)
-    node.by_threshold = {value, {as_named, swapped}, when_crossed};
+  // A speed is at least 0, if it is a number.
+  const bool may_be_unknown = program.nodes[value].op == Op::kTouchSpeed;
+  const int known = may_be_unknown ? Enter(program, {(*measured)[0], 0}) : kNone;
+  if (as_named != kNone && swapped != kNone && may_be_unknown == (known != kNone))
+    node.by_threshold = {value, {as_named, swapped}, when_crossed, known};
 }
+
+ThresholdSet BitOf(int threshold) { return threshold == kNone ? 0 : ThresholdSet{1} << threshold; }
 
 // Only these thresholds matter of what is measured.
 void WatchThresholds(const Program& program, Rule& rule, const ByThreshold& by) {
-  const ThresholdSet both = ThresholdSet{1} << by.thresholds[0] | ThresholdSet{1}
-                                                                      << by.thresholds[1];
+  const ThresholdSet all = BitOf(by.thresholds[0]) | BitOf(by.thresholds[1]) | BitOf(by.known);
   const Node& value = program.nodes[by.value];
   if (value.op == Op::kTrigger) rule.watches_grip[value.roles[0]] = true;
-  (value.op == Op::kTrigger ? rule.watches_grips : rule.watches_press) |= both;
+  (value.op == Op::kTrigger ? rule.watches_grips : rule.watches_press) |= all;
 }
 
 // Adds a comparison to what must be measured, if it is of the same touch or hand as the others.
 bool AddMeasured(const Program& program, MeasuredPart& part, const ByThreshold& by) {
   const Node& value = program.nodes[by.value];
   const auto add = [&](Limits& limits, int threshold) {
-    (by.when_crossed ? limits.crossed : limits.not_crossed) |= ThresholdSet{1} << threshold;
+    (by.when_crossed ? limits.crossed : limits.not_crossed) |= BitOf(threshold);
+    limits.crossed |= BitOf(by.known);
   };
   if (value.op == Op::kTrigger) {
     if (part.hand != kNone && part.hand != value.roles[0]) return false;

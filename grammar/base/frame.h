@@ -135,7 +135,8 @@ struct Touch {
   double up_on_b = -1;
   double normal_force_n = 0;
   /// How fast, up or down, the two surfaces move against each other where the touch bears load:
-  /// about 0 while one stands, tips or rolls on the other, more while they bounce off.
+  /// about 0 while one stands, tips or rolls on the other, more while they bounce off. No number if
+  /// it is not known.
   double vertical_speed_m_per_s = 0;
   /// Where the touch bears load, and the contact normal on a there (out of b into a). Without a
   /// normal (zero) neither is known.
@@ -177,6 +178,8 @@ struct FrameChanges {
   std::span<const ContactEnd> contact_ends;
 };
 
+inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+
 // Not tracked is a value: a look of which nobody knows where its entity is. No condition that reads
 // such a look holds, and neither does its opposite (docs/recording-format.md). Tested by
 // tests/grammar/engine/tracking_test.cc
@@ -187,11 +190,10 @@ inline bool IsTracked(const EntitySample& look) { return !std::isnan(look.p_WB_m
 /// by side, nothing bears load.
 inline double SpeedAtTheUpper(const Touch& touch, const EntitySample& a, const EntitySample& b) {
   const bool is_beside = touch.up_on_a == 0 && touch.up_on_b == 0;
-  if (is_beside || !IsTracked(a) || !IsTracked(b)) return 0;
+  if (!IsTracked(a) || !IsTracked(b)) return kNotKnown;
+  if (is_beside) return 0;
   return VerticalSpeedBetween(a, b, (touch.up_on_a >= touch.up_on_b ? a : b).p_WB_m);
 }
-
-inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
 /// All that is measured of it is no number.
 inline EntitySample NotTracked() {

@@ -28,6 +28,7 @@ void CheckNode(const Program& program, NodeId id) {
   PREHEND_CHECK(program.nodes.has(by.value));
   for (const int threshold : by.thresholds)
     PREHEND_CHECK(threshold != kNone && IsNoneOrBelow(threshold, program.thresholds.size()));
+  PREHEND_CHECK(IsNoneOrBelow(by.known, program.thresholds.size()));
 }
 
 class RuleCheck {

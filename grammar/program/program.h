@@ -33,6 +33,7 @@ struct ByThreshold {
       kNone,
       kNone};  ///< of a touch between its first and second role, and of one named the other way
   bool when_crossed = false;  ///< true where the threshold is crossed, else where it is not
+  int known = kNone;          ///< another one, crossed where there is a value; kNone: always
 };
 
 struct Node {

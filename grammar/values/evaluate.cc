@@ -176,6 +176,7 @@ Kleene Evaluator::CompareMeasured(const ByThreshold& by, const View& view) const
               : is_now         ? touch->crossed_thresholds
                                : SampleAt(touch->crossings, view.frame).crossed;
   }
+  if (by.known != kNone && ((crossed >> by.known) & 1) == 0) return Known(view.negated);
   return Known((((crossed >> by.thresholds[swapped ? 1 : 0]) & 1) != 0) == by.when_crossed);
 }
 
@@ -450,13 +451,13 @@ double Evaluator::Gap(int hand, int object, FrameNumber frame) const {
 }
 
 double Evaluator::ClosingSpeed(int hand, int object, FrameNumber frame) const {
-  if (frame <= history_.first()) return 0;
-  const double seconds = history_.Seconds(history_.At(frame).tick - history_.At(frame - 1).tick);
-  return (Gap(hand, object, frame - 1) - Gap(hand, object, frame)) / seconds;
+  const double gap_m = Gap(hand, object, frame);
+  if (frame <= history_.first()) return std::isnan(gap_m) ? kNotKnown : 0;
+  return (Gap(hand, object, frame - 1) - gap_m) / SecondsBetween(frame - 1, frame);
 }
 
 double Evaluator::SurfaceSpeed(int hand, FrameNumber frame) const {
-  if (frame <= history_.first()) return 0;
+  if (frame <= history_.first()) return Apart_m(hand, frame, frame);
   return Apart_m(hand, frame, frame - 1) / SecondsBetween(frame - 1, frame);
 }
 

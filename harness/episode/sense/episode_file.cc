@@ -180,8 +180,9 @@ Json TouchJson(const grammar::Touch& touch, const grammar::EntityTable& entity_t
                {"b", entity_table.entities[touch.b].name},
                {"up_on_a", std::clamp(touch.up_on_a, -1.0, 1.0)},  // a unit vector's, nearly
                {"up_on_b", std::clamp(touch.up_on_b, -1.0, 1.0)},
-               {"force_n", touch.normal_force_n},
-               {"vertical_speed_m_per_s", touch.vertical_speed_m_per_s}};
+               {"force_n", touch.normal_force_n}};
+  if (!std::isnan(touch.vertical_speed_m_per_s))
+    json["vertical_speed_m_per_s"] = touch.vertical_speed_m_per_s;
   if (!touch.nhat_BA_W.isZero()) {
     json["at_m"] = ToJson(touch.p_W_m);
     json["normal"] = ToJson(touch.nhat_BA_W);

@@ -28,6 +28,9 @@ std::string Held(const std::string& grammar, const std::vector<int>& lost) {
     if (tick >= 300 && tick < 500) {
       for (const int entity : lost) scene.looks[static_cast<std::size_t>(entity)] = NotTracked();
     }
+    Touch stands{.a = Scene::kCup, .b = Scene::kTray, .up_on_a = 1};
+    stands.vertical_speed_m_per_s = SpeedAtTheUpper(stands, scene.looks[1], scene.looks[2]);
+    scene.touches = {stands};
     monitor.Advance(scene.At(tick), events);
   }
   monitor.Finish(1000, events);
@@ -60,6 +63,9 @@ TEST(NotTracked, NeitherAConditionNorItsOppositeHolds) {
                               "in_sphere(cup, position(hand), 1 m)",
                               "in_sphere(position(hand), position(cup), 1 m)",
                               "inside(cup, tray)",
+                              "touch_speed(cup, tray) < 1 m/s",
+                              "touch_speed(cup, tray) + 1 m/s < 2 m/s",
+                              "speed_along(cup, tray) < 1 m/s",
                               "height(cup) == 0 m"};
   for (const std::string condition : conditions) {
     EXPECT_EQ(Held(While(condition), {Scene::kCup}), "0..300; 500..1000; ") << condition;
