@@ -208,9 +208,7 @@ std::optional<Reach> Evaluator::ReachOf(const Node& node, const View& view) cons
     const int entity = Entity(node, view, 0);
     if (!IsTracked(entity, view.frame) || std::isnan(centre->x()))
       return Reach{.distance_m = kNotKnown};
-    const double distance = DistanceToSurface_m(*centre, entity_table_.entities[entity],
-                                                history_.Look(entity, view.frame));
-    return Reach{.distance_m = distance, .radius_m = *radius};
+    return Reach{.distance_m = ToSurface_m(*centre, entity, view.frame), .radius_m = *radius};
   }
   const std::optional<Vector3d> point = Position(node.args[0], view);
   if (!point) return std::nullopt;

@@ -114,6 +114,8 @@ class Evaluator {
   std::optional<double> Arithmetic(const Node& node, const View& view) const;
   double SignalOf(const Node& node, const View& view) const;
   double Clearance_m(int a, int b, FrameNumber frame) const;
+  /// From a point in the world; the surface of a hand that was shown is its collision spheres.
+  double ToSurface_m(const Eigen::Vector3d& p_W, int entity, FrameNumber frame) const;
   double OutOfBox_m(int a, int b, FrameNumber frame) const;
   double OutOfReach_m(const Node& node, RuleInstance& instance, FrameNumber frame) const;
   double OffTop_m(int a, int b, double most_m, FrameNumber frame) const;

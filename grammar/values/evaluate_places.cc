@@ -46,9 +46,18 @@ bool Evaluator::IsInside(const Node& node, const View& view) const {
 double Evaluator::AwayFrom_m(int who, int whom, FrameNumber frame) const {
   if (!IsTracked(who, frame) || !IsTracked(whom, frame))
     return std::numeric_limits<double>::quiet_NaN();
-  return DistanceToSurface_m(history_.Look(whom, frame).p_WB_m,
-                             entity_table_.entities[static_cast<std::size_t>(who)],
-                             history_.Look(who, frame));
+  return ToSurface_m(history_.Look(whom, frame).p_WB_m, who, frame);
+}
+
+double Evaluator::ToSurface_m(const Vector3d& p_W, int entity, FrameNumber frame) const {
+  const HandAtFrame* hand = history_.Hand(entity, frame);
+  if (hand == nullptr)
+    return DistanceToSurface_m(p_W, entity_table_.entities[static_cast<std::size_t>(entity)],
+                               history_.Look(entity, frame));
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const CollisionSphere& sphere : hand->collision_spheres)
+    nearest_m = std::min(nearest_m, (p_W - sphere.p_W_m).norm() - sphere.radius_m);
+  return std::max(nearest_m, 0.0);
 }
 
 // Others of the class move, too, and nobody watches them. Of two that are equally near, the first
@@ -255,11 +264,7 @@ double Evaluator::OutOfReach_m(const Node& node, RuleInstance& instance, FrameNu
   if (node.op == Op::kInside)
     return OutOfBox_m(Entity(node, view, 0), Entity(node, view, 1), frame);
   if (node.op == Op::kSolidInSphere) {
-    const int entity = Entity(node, view, 0);
-    return DistanceToSurface_m(origin(node.args[0]),
-                               entity_table_.entities[static_cast<std::size_t>(entity)],
-                               history_.Look(entity, frame)) -
-           number(node.args[1]);
+    return ToSurface_m(origin(node.args[0]), Entity(node, view, 0), frame) - number(node.args[1]);
   }
   if (node.op == Op::kInSphere)
     return (origin(node.args[0]) - origin(node.args[1])).norm() - number(node.args[2]);

@@ -341,7 +341,9 @@ TEST(Signals, TestsHoldAsDocumented) {
       {"part_of(tray, cup)", false},
       {"in_sphere(position(cup), tray, 0.45 m)", true},
       {"in_sphere(position(cup), tray, 0.44 m)", false},
-      {"in_sphere(cup, tray, 0.40 m)", true},  // it reaches nearer than its origin
+      {"in_sphere(cup, tray, 0.40 m)", true},   // it reaches nearer than its origin
+      {"in_sphere(hand, cup, 0.531 m)", true},  // as its sphere does
+      {"in_sphere(hand, cup, 0.529 m)", false},
       {"in_cylinder(cup, tray, 0.41 m, 0.21 m)", true},
       {"in_cylinder(cup, tray, 0.39 m, 0.21 m)", false},
       {"in_cylinder(cup, tray, 0.41 m, 0.19 m)", false},
