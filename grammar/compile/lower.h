@@ -194,6 +194,8 @@ class Lowering {
   Typed LowerIs(const ast::Expr& expr);
   Typed TwiceTheSame(const ast::Expr& role, std::string_view callee);
   bool LiesOnItself(const Node& node);
+  int SeenFrom(NodeId position);
+  std::string WhyNotComparable(const Node& node);
   bool LowerArgument(const ast::Expr& arg, Argument wanted, const Operator& builtin, Node& node,
                      int& next_node, int& next_role, Typed& result);
   static int AxisNamed(const ast::Expr& expr);

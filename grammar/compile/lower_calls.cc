@@ -332,6 +332,31 @@ bool Lowering::LiesOnItself(const Node& node) {
   return compares && signature(0) == signature(1);
 }
 
+// As seen from whom a position is; kNone: in the world.
+int Lowering::SeenFrom(NodeId position) {
+  const Node& node = symbols_.program.nodes[position];
+  if (node.op == Op::kAtEnd) return SeenFrom(node.args[0]);
+  if (node.op == Op::kAtBegin) return SeenFrom(rule().anchors[static_cast<std::size_t>(node.slot)]);
+  return node.op == Op::kPositionOn ? node.roles[1] : kNone;
+}
+
+// Positions as seen from different entities have nothing to do with each other. What is wrong, or
+// nothing.
+std::string Lowering::WhyNotComparable(const Node& node) {
+  const bool is_solid = node.op == Op::kSolidInSphere;
+  if (!is_solid && node.op != Op::kDistance && node.op != Op::kInSphere &&
+      node.op != Op::kInCylinder)
+    return {};
+  const int first = is_solid ? kNone : SeenFrom(node.args[0]);
+  const int second = SeenFrom(node.args[is_solid ? 0 : 1]);
+  const auto text = [&](int role) {
+    return role == kNone
+               ? std::string("in the world")
+               : "as seen from " + Quoted(rule().roles[static_cast<std::size_t>(role)].name);
+  };
+  return first == second ? "" : "the first is " + text(first) + ", and this is " + text(second);
+}
+
 // The reference to the touch of the node's two roles.
 int Lowering::TouchOf(const Node& node) {
   return AddReference(
@@ -423,6 +448,11 @@ Lowering::Typed Lowering::LowerBuiltin(const Operator& builtin, const Expr& expr
     return Bad(expr.args[1].place,
                Quoted(builtin.name) + " needs two different positions, and both are the same",
                "name another one");
+  }
+  if (const std::string why = checking_ ? "" : WhyNotComparable(node); !why.empty()) {
+    return Bad(expr.args[1].place,
+               Quoted(builtin.name) + " needs two positions of one kind: " + why,
+               "position_on(a, c) goes with position_on(b, c), or with position_on(a, c)@begin");
   }
   if (builtin.asks == Asks::kTouching || builtin.AsksTouchValues()) node.slot = TouchOf(node);
   result.node = AddSignal(node);
