@@ -238,12 +238,26 @@ class CompositionLowering {
                                 "draw the parts below each other; intervals of one event do not "
                                 "overlap, and a part equals itself");
     }
-    if (parts == 1 || d_.all_of || network.Constrain(0, parts - 1, kAnyRelation & ~kAgainstTime))
-      return;
-    lowering_.Complain(d_.parts.back().place,
-                       "this is never an event: the last part, '" + d_.parts.back().label +
-                           "', ends before the first one, '" + d_.parts.front().label + "', begins",
-                       "list the parts as they follow each other in time");
+    if (parts > 1 && !d_.all_of && !network.Constrain(0, parts - 1, kAnyRelation & ~kAgainstTime))
+      return lowering_.Complain(d_.parts.back().place,
+                                "this is never an event: the last part, '" + d_.parts.back().label +
+                                    "', ends before the first one, '" + d_.parts.front().label +
+                                    "', begins",
+                                "list the parts as they follow each other in time");
+    const auto may_follow = [&](int first, int second) {
+      return AllenNetwork(network).Constrain(first, second, Bit(Allen::kBefore));
+    };
+    for (std::size_t i = 0; i < d_.absences.size(); ++i) {
+      const ast::Absence& absence = d_.absences[i];
+      const auto& [part, left, right] = composition.absences[i];
+      if (may_follow(left, right)) continue;
+      lowering_.Complain(
+          absence.left_place,
+          "this is always true: no time is between '" + absence.left + "' and '" + absence.right +
+              "', as '" + absence.right + "' never begins after '" + absence.left + "' ends",
+          may_follow(right, left) ? "without .. between " + absence.right + " and " + absence.left
+                                  : "leave it out, or let one follow the other");
+    }
   }
 
   Program& program_;
