@@ -343,7 +343,13 @@ void LawParser::ParseRelations(Law& law) {
     if (Peek().kind != Token::Kind::kName)
       Fail("expected 'do not overlap', 'lies inside' or one of Allen's relations, found " + Found(),
            "a law says how events lie to each other: a(x) meets b(x)");
+    const Place place = Peek().place;
     law.relations.push_back(ExpectName("one of Allen's relations"));
+    if (At("("))
+      FailAt(place,
+             "expected 'do not overlap', 'lies inside' or one of Allen's relations, found '" +
+                 law.relations.back() + "'",
+             "a law says how events lie to each other: a(x) meets b(x)");
   } while (Accept("|"));
 }
 

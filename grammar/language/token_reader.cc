@@ -370,11 +370,16 @@ std::string TokenReader::ExpectName(std::string_view what) {
          : Peek().kind == Token::Kind::kText && what.starts_with("a class")
              ? "what kind of thing it is, not which one: object: MilkCarton"
              : "");
-  if (IsReserved(Peek().text)) {
-    Fail("'" + Peek().text + "' is a word of the language and cannot be " + std::string(what),
+  if (!IsReserved(Peek().text)) return Take().text;
+  // What begins a line goes on there with the next item; else the word was meant as a name.
+  const bool begins_line = at_ == 0 || tokens_[at_ - 1].place.line != Peek().place.line;
+  if (begins_line && AtItem())
+    Fail("expected " + std::string(what) + ", found " + Found(),
+         "what stands in front of it is not complete");
+  const Token word = Take();
+  FailAt(word.place,
+         "'" + word.text + "' is a word of the language and cannot be " + std::string(what),
          "choose another name");
-  }
-  return Take().text;
 }
 
 std::string TokenReader::WordHint(bool is_form) const {
