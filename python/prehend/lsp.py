@@ -226,7 +226,7 @@ class Server:
     def rename(self, params):
         grammar, line, _, token = self._asked(params)
         new = params["newName"]
-        if token is None or not re.fullmatch(r"[A-Za-z_]\w*", new) or new in WORDS:
+        if token is None or not re.fullmatch("[A-Za-z][A-Za-z0-9_]*", new) or new in WORDS:
             raise ValueError(f"found '{new}', wanted another name: letters, digits and '_', no word of the language")
         is_role = token[1] in grammar.roles(line)
         if not is_role and token[1] not in grammar.defined:
@@ -236,9 +236,16 @@ class Server:
             raise ValueError(f"'{new}' is there already")
         tokens = grammar.item(line) if is_role else grammar.tokens
         # A role may be called like something that is defined elsewhere.
-        edits = [{"range": grammar.span(one), "newText": new} for one in tokens if one[:2] == ("name", token[1])
-                 and (is_role or token[1] not in grammar.roles(one[2]))]
-        return {"changes": {params["textDocument"]["uri"]: edits}}
+        renamed = [one for one in tokens if one[:2] == ("name", token[1])
+                   and (is_role or token[1] not in grammar.roles(one[2]))]
+        lines = list(grammar.lines)
+        for _, word, at, column in reversed(renamed):
+            lines[at] = lines[at][:column] + new + lines[at][column + len(word):]
+        before, after = ([error[3] for error in _prehend.check_grammar(grammar.file, text) if not error[5]]
+                         for text in (grammar.text, "\n".join(lines)))
+        if len(after) > len(before):  # a signal, a class, or what a used file defines
+            raise ValueError(f"'{new}': {next((error for error in after if error not in before), "it is there already")}")
+        return {"changes": {params["textDocument"]["uri"]: [{"range": grammar.span(one), "newText": new} for one in renamed]}}
 
     def formatting(self, params):
         grammar = self.open[params["textDocument"]["uri"]]

@@ -112,7 +112,9 @@ test("rename, layout", async () => {
   assert.equal(await renamed("near = 5", "close"), TEXT.replaceAll("near", "close"));
   const [head, ...rest] = TEXT.split("event drinking");
   assert.equal(await renamed("cup: Thing", "mug"), head.replaceAll("cup", "mug") + "event drinking" + rest.join(""));
-  for (const [words, newName] of [["grasping", "holding"], ["near = 5", "while"], ["near = 5", "at_mouth"], ["near = 5", "3 x"]])
+  for (const [words, newName] of [["grasping", "holding"], ["near = 5", "while"], ["near = 5", "at_mouth"], ["near = 5", "3 x"],
+    ["near = 5", "_close"], ["near = 5", "nähe"], ["near = 5", "cup"], ["at_mouth(hand: Hand", "speed"], ["at_mouth(hand: Hand", "grasping"],
+    ["cup: Thing", "near"]])
     await assert.rejects(ask("rename", uri, at(TEXT, words, 1), { newName }), `${words} ${newName}`);
   await changed(uri, TEXT.replaceAll(" > ", ">").replaceAll("  ", "\t"));
   const [edit] = await ask("formatting", uri, undefined, { options: { tabSize: 2, insertSpaces: true } });
