@@ -124,6 +124,7 @@ OtherNumbers::OtherNumbers(const Program& program, const std::string& rule)
             std::ranges::find(program.params, found.number->text, &ProgramParam::name);
         if (param == program.params.end()) continue;
         limit.value = param->value;
+        limit.param = param->name;
       }
       if (limit.value.value == 0) continue;
       s.limits.push_back(std::move(limit));

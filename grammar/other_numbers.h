@@ -24,6 +24,7 @@ struct Limit {
   Place place;
   Quantity value;
   bool is_count = false;
+  std::string param = {};  ///< whose value it is; empty: it stands there as a number
 };
 
 /// The texts are read once.

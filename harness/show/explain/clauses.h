@@ -53,7 +53,9 @@ struct Decisive {
   double limit = 0;
   double instead = 0;  ///< would have been enough
   grammar::Dimension dimension;
-  double share = 0;  ///< of the larger of the two, before `instead` was rounded
+  double share = 0;        ///< of the larger of the two, before `instead` was rounded
+  std::string param = {};  ///< that the limit is, if it stands elsewhere, too
+  std::vector<std::string> elsewhere = {};  ///< where it does, and was not changed
 };
 
 /// Why an event that happened began, ended, counted and was known as late as it was.

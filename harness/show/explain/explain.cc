@@ -181,6 +181,7 @@ void AddTo(Json& json, const std::optional<Decisive>& decisive) {
                               : grammar::DimensionText(decisive->dimension)},
                  {"share", std::abs(decisive->instead - decisive->limit) /
                                std::max(std::abs(decisive->instead), std::abs(decisive->limit))}};
+  if (!decisive->elsewhere.empty()) json["decisive"]["elsewhere"] = decisive->elsewhere;
 }
 
 std::string Sentence(const std::optional<Decisive>& decisive, const char* what) {
@@ -189,9 +190,13 @@ std::string Sentence(const std::optional<Decisive>& decisive, const char* what) 
     return fmt::format("  decisive: no clause alone; with no other single number would it {}\n",
                        what);
   const auto text = [&](double value) { return QuantityText(value, decisive->dimension, 12); };
-  return fmt::format("  decisive: {} of {}  ({})\n    with {} instead of {} it would {}\n",
+  const std::string elsewhere =
+      decisive->elsewhere.empty() ? ""
+                                  : fmt::format(", if '{}' stayed as it is in {}", decisive->param,
+                                                fmt::join(decisive->elsewhere, ", "));
+  return fmt::format("  decisive: {} of {}  ({})\n    with {} instead of {} it would {}{}\n",
                      decisive->clause, decisive->rule, decisive->where, text(decisive->instead),
-                     text(decisive->limit), what);
+                     text(decisive->limit), what, elsewhere);
 }
 
 }  // namespace
@@ -484,13 +489,19 @@ std::optional<Decisive> Search(const grammar::ReplayMonitor& past, const std::st
     const double rounded = RoundedAway(best->At(least), limit.value, digits);
     if (works(*best, rounded)) instead = rounded, came = last;
   }
-  return Decisive{.clause = limit.clause,
-                  .rule = limit.owner,
-                  .where = Source(limit.file, limit.place),
-                  .limit = limit.value.value,
-                  .instead = instead,
-                  .dimension = limit.value.dimension,
-                  .share = least};
+  Decisive decisive{.clause = limit.clause,
+                    .rule = limit.owner,
+                    .where = Source(limit.file, limit.place),
+                    .limit = limit.value.value,
+                    .instead = instead,
+                    .dimension = limit.value.dimension,
+                    .share = least,
+                    .param = limit.param};
+  for (const Limit& other : limits) {
+    if (&other != &limit && !limit.param.empty() && other.param == limit.param)
+      decisive.elsewhere.push_back(Source(other.file, other.place));
+  }
+  return decisive;
 }
 
 }  // namespace

@@ -307,6 +307,34 @@ TEST(Decisive, OfADrinkingThatNeverReachedTheMouthNamesTheDistance) {
   EXPECT_NEAR(why.decisive->instead, 0.302, 0.002);
 }
 
+// The parameter would have to be smaller in one clause, and not in the other.
+TEST(Decisive, SaysWhereElseAParameterStands) {
+  const char* text =
+      "grammar test\n"
+      "param far = 20 cm\n"
+      "event away(thing: Movable, hand: Hand)\n"
+      "  while distance(thing, hand) > far\n"
+      "    and height(thing) > far\n";
+  Play play;
+  for (int frame = 0; frame < 20; ++frame) {
+    Scene scene;
+    scene.looks[Scene::kTray].p_WB_m.z() = 0.3;
+    scene.looks[Scene::kHand].p_WB_m.z() = 0.101;
+    play.scenes.push_back(scene);
+  }
+  const auto past = play.Watched(text);
+  const Ask ask = Asked(*past, "away thing=tray");
+  WhyMissing why = ExplainMissing(*past, ask);
+  FindDecisive(
+      *past, ask, [&](const auto& program) { return play.Recognised(program); }, why);
+  ASSERT_TRUE(why.decisive);
+  EXPECT_EQ(why.decisive->where, "test:4");
+  EXPECT_EQ(why.decisive->param, "far");
+  EXPECT_EQ(why.decisive->elsewhere, std::vector<std::string>{"test:5"});
+  EXPECT_NE(Text(why, 1000).find(" it would have happened, if 'far' stayed as it is in test:5\n"),
+            std::string::npos);
+}
+
 // The cup was away, but far too short; the tray is 1 mm too near all the time. So a threshold of
 // 19.8 cm brings the tray's event, and it is the tray whose clauses are told.
 TEST(Decisive, WhatIsToldIsOfThoseToWhomItWouldHaveHappened) {
