@@ -244,7 +244,7 @@ class Server:
         before, after = ([error[3] for error in _prehend.check_grammar(grammar.file, text) if not error[5]]
                          for text in (grammar.text, "\n".join(lines)))
         if len(after) > len(before):  # a signal, a class, or what a used file defines
-            raise ValueError(f"'{new}': {next((error for error in after if error not in before), "it is there already")}")
+            raise ValueError(f"'{new}': {next((error for error in after if error not in before), 'it is there already')}")
         return {"changes": {params["textDocument"]["uri"]: [{"range": grammar.span(one), "newText": new} for one in renamed]}}
 
     def formatting(self, params):
