@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,61 @@ TEST(Recording, WhatBadSensorsSawIsSegmentedAgainAsItWas) {
   const auto first = nlohmann::json::parse(played.out), second = nlohmann::json::parse(again.out);
   EXPECT_EQ(first["events"], second["events"]);
   EXPECT_FALSE(first["events"].empty());
+}
+
+/// What begins before time 0 counts from its first frame, and everything that is written of it is
+/// read again.
+TEST(Recording, WhatBeginsBeforeZeroIsCountedFromItsFirstFrame) {
+  const auto folder = FreshFolder("before_zero");
+  const auto file = [&](const char* name) { return (folder / name).string(); };
+  const std::string docs = PREHEND_SOURCE_DIR "/docs/motion_capture";
+  ASSERT_EQ(Prehend({"import", docs + "/poses.csv", "--map", docs + "/bodies.yaml", "-o",
+                     file("from_0.jsonl")})
+                .exit_code,
+            0);
+  std::string moved;
+  std::istringstream lines(ReadFile(folder / "from_0.jsonl"));
+  for (std::string line; std::getline(lines, line);) {
+    auto json = nlohmann::ordered_json::parse(line);
+    for (const char* key : {"tick", "end_tick"})
+      if (json.contains(key)) json[key] = json[key].get<std::int64_t>() - 30'000;
+    moved += json.dump() + "\n";
+  }
+  WriteFile(folder / "before_0.jsonl", moved);
+  const std::string said =
+      "warning: 'milk_is_carried' begins at -3 s: times count from its first frame\n"
+      "  hint: of labels by its own clock: offset_s: 3 in their map\n";
+  const auto events = [&](const std::string& of) {
+    return nlohmann::json::parse(Prehend({"episode", "resegment", of, "--json"}).out)["events"];
+  };
+  EXPECT_EQ(events(file("before_0.jsonl")), events(file("from_0.jsonl")));
+  EXPECT_EQ(Prehend({"grammar", "watch", file("before_0.jsonl"), "--json"}).out,
+            Prehend({"grammar", "watch", file("from_0.jsonl"), "--json"}).out);
+  for (const char* ending : {".csv", ".eaf", ".TextGrid"}) {
+    const std::string labels = file("labels") + ending;
+    const Said written = Prehend({"episode", "resegment", file("before_0.jsonl"), "-o", labels});
+    EXPECT_EQ(written.err, said);
+    const Said scored = Prehend({"score", file("before_0.jsonl"), "--truth", labels, "--json"});
+    ASSERT_EQ(scored.exit_code, 0) << scored.err;
+    EXPECT_EQ(scored.err, said);
+    EXPECT_EQ(nlohmann::json::parse(scored.out)["grammars"][0]["total"]["f1_50"], 1) << ending;
+  }
+  ASSERT_EQ(Prehend({"accept", file("before_0.jsonl"), "--reason", "a test"}, {"CI="}).exit_code,
+            0);
+  EXPECT_EQ(Prehend({"check", file("before_0.jsonl")}).exit_code, 0);
+  const Said kept = Prehend({"import", file("before_0.jsonl"), "-o", file("all.episodes")});
+  EXPECT_EQ(kept.err, said);
+  EXPECT_EQ(events(file("all.episodes")), events(file("from_0.jsonl")));
+  for (const std::string to : {"csv", "npz", "mcap"}) {
+    const std::string out = file("out.") + to, take = file("again.jsonl");
+    EXPECT_EQ(
+        Prehend({"episode", "export", file("before_0.jsonl"), "--to", to, "-o", out}).exit_code, 0);
+    const Said again = Prehend({"import", out, "--map", out + ".map.yaml", "-o", take});
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    if (to != "csv") continue;
+    const Said scored = Prehend({"score", take, "--truth", file("out.events.csv"), "--json"});
+    EXPECT_EQ(nlohmann::json::parse(scored.out)["grammars"][0]["total"]["f1_50"], 1) << scored.err;
+  }
 }
 
 /// Files of scenarios that ship.

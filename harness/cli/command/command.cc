@@ -191,9 +191,11 @@ tl::expected<episode::Episode, ExitCode> OpenEpisodeOrComplain(const std::string
                                                                const CommandContext& context) {
   const auto name = episode::FindEpisode(typed, options.Text("--episode"), context.root);
   if (!name) return tl::unexpected(Complain(context, name.error()));
-  return episode::OpenEpisode(*name, {options.Text("--grammar"), options.All("--set")},
-                              context.root)
-      .map_error([&](const grammar::Diagnostics& why) { return Complain(context, why); });
+  auto episode =
+      episode::OpenEpisode(*name, {options.Text("--grammar"), options.All("--set")}, context.root);
+  if (!episode) return tl::unexpected(Complain(context, episode.error()));
+  context.err << episode->moved();
+  return std::move(*episode);
 }
 
 tl::expected<suite::PlayedRun, ExitCode> PlayOrComplain(episode::Episode episode,

@@ -272,6 +272,7 @@ ExitCode WriteLabels(const std::vector<episode::EpisodeName>& selected,
   const std::string& file = options.Text("--output");
   const auto labels = exchange::WriteLabels(*episode, options.All("--event"), file, context.today);
   if (!labels) return Complain(context, labels.error());
+  context.err << episode->moved();
   context.out << fmt::format("{}: {} labels\n", file, *labels);
   return ExitCode::kAgrees;
 }

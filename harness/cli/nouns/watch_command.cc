@@ -129,9 +129,9 @@ class LineWatcher {
         [&](const std::function<void(const episode::FrameNews&)>& take) {
           do {
             if (!live_ || live_->has_frame())
-              for (episode::EpisodeFrame& frame : stream_.frames()) take(frame.View());
+              for (episode::EpisodeFrame& frame : stream_.frames()) take(Moved(frame));
           } while (context_.out && Take(in));
-          return std::max<grammar::Tick>(stream_.end_tick(), 1);
+          return std::max<grammar::Tick>(stream_.end_tick() + moved_.value_or(0), 1);
         },
         [&](const grammar::Timeline& decided) {
           Print(decided, options.Has("--json"), context_.out);
@@ -163,6 +163,16 @@ class LineWatcher {
     return true;
   }
 
+  grammar::Frame Moved(episode::EpisodeFrame& frame) {
+    if (!moved_) {
+      moved_ = episode::MovedBy(frame.tick);
+      context_.err << episode::MovedText(stream_.header(), *moved_) << std::flush;
+    }
+    grammar::Frame moved = frame.View();
+    moved.tick += *moved_;
+    return moved;
+  }
+
   void Count(const grammar::Diagnostics& wrong) {
     if (wrong.empty()) return;
     ++skipped_;
@@ -180,7 +190,7 @@ class LineWatcher {
   }
 
   ExitCode End() {
-    if (stream_.end_tick() == 0) return EndsTooEarly();
+    if (!moved_ && stream_.end_tick() == 0) return EndsTooEarly();
     Count(stream_.LeftOut());
     context_.err << stream_.gaps();
     for (const auto& [kind, fault] : faults_) {
@@ -201,6 +211,7 @@ class LineWatcher {
   const CommandContext& context_;
   episode::EpisodeStream stream_;
   std::optional<exchange::LivePoses> live_;  ///< with a map
+  std::optional<grammar::Tick> moved_;       ///< since the first frame
   bool ended_ = false;
   grammar::Diagnostics wrong_;  ///< with the last line
   std::size_t line_ = 0, skipped_ = 0;

@@ -39,6 +39,10 @@ class Episode {
   const EpisodeFile* file() const { return file_.get(); }
   /// Null if it was simulated.
   Recording* recording() { return recording_ ? &*recording_ : nullptr; }
+  /// Of a recording that begins before 0: lines that say it, or "".
+  std::string moved() const {
+    return recording_ ? MovedText(recording_->header, recording_->moved) : "";
+  }
 
   /// What `prehend run` prints; a scenario is simulated, once. `frames`: with every snapshot.
   Result<RunResult> Run(bool frames);

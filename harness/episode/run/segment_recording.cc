@@ -116,7 +116,7 @@ std::string AssumedText(const std::vector<grammar::EntityInfo>& entities, const 
 
 MissingFacts MissingOf(const Recording& episode, const grammar::FactsOfEpisode& facts,
                        const grammar::Program& program) {
-  MissingFacts missing;
+  MissingFacts missing{.warnings = MovedText(episode.header, episode.moved)};
   const std::vector<grammar::EntityInfo>& entities = episode.header.entity_table.entities;
   std::vector<bool> placed = episode.placed;
   placed.resize(entities.size());

@@ -247,6 +247,20 @@ std::string GapsText(const grammar::EntityTable& table, const std::vector<LookGa
   return text;
 }
 
+grammar::Tick MovedBy(grammar::Tick first_frame) {
+  return std::max<grammar::Tick>(0, -first_frame);
+}
+
+std::string MovedText(const EpisodeHeader& header, grammar::Tick moved) {
+  if (moved == 0) return "";
+  const double by_s =
+      static_cast<double>(moved) / static_cast<double>(header.entity_table.ticks_per_second);
+  return fmt::format(
+      "warning: '{}' begins at {:.9g} s: times count from its first frame\n"
+      "  hint: of labels by its own clock: offset_s: {:.9g} in their map\n",
+      header.episode, -by_s, by_s);
+}
+
 EpisodeWriter::EpisodeWriter(std::ostream& out, const EpisodeHeader& header,
                              const WrittenFacts& facts)
     : out_(out),

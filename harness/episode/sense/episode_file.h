@@ -107,6 +107,7 @@ struct Recording {
   grammar::Tick end_tick = 0;  ///< the first tick after the episode
   std::vector<bool> placed;    ///< by entity: some frame says where it is
   std::vector<LookGaps> gaps;  ///< by entity: how long it is not tracked
+  grammar::Tick moved = 0;     ///< by so much later than in its file, as that begins before 0
   bool says_its_end = false;   ///< it has a line with 'end_tick'; otherwise it may be cut off
 
   /// In their order; a frame holds until the next one.
@@ -118,6 +119,11 @@ struct Recording {
 /// For frames that are played, and were not read from a file: what is not tracked for a short time
 /// is as it was seen last.
 void BridgeLooks(Recording& episode);
+
+/// Of labels, goldens, episode files and most formats no time lies before 0: what begins before it
+/// counts from its first frame. By how many ticks it is moved, and what is said of that.
+grammar::Tick MovedBy(grammar::Tick first_frame);
+std::string MovedText(const EpisodeHeader& header, grammar::Tick moved);
 
 /// Reports errors with file, line and column. The limits are those above.
 Result<Recording> ReadRecording(const std::string& path);

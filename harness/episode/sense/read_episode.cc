@@ -141,6 +141,9 @@ class EpisodeReader {
                     "each line after the first is one: {\"tick\": 0, ...}");
     if (!episode.says_its_end) episode.end_tick = episode.frames.back().tick + 1;
     episode.gaps = Gaps(episode.end_tick);
+    episode.moved = MovedBy(episode.frames.front().tick);
+    for (EpisodeFrame& frame : episode.frames) frame.tick += episode.moved;
+    episode.end_tick += episode.moved;
   }
 
   std::vector<LookGaps> Gaps(grammar::Tick end) const { return bridge_.Gaps(end); }

@@ -169,6 +169,8 @@ class LabelScorer {
     std::size_t true_events = 0;
     for (std::size_t i = 0; i < names.size(); ++i) {
       PREHEND_TRY(const auto episode, Open(names[i], group.asked));
+      if (const std::string moved = episode->moved(); said_.insert(moved).second)
+        warnings_ += moved;
       if (episode->recording() && !foreign)
         AddMissing(episode::FindMissingFacts(*episode->recording(), *compiled.program));
       PREHEND_TRY(EpisodeToScore labelled,
