@@ -53,6 +53,10 @@ class RowPoseReader {
       poses_.notes.push_back(fmt::format("it has only {}, {:.2f} s",
                                          grammar::CountOf(frames_, "frame"), poses_.last_s));
     if (orders_ && !others_) poses_.quaternion_order = map_.quaternion_order->value;
+    if (!orders_ && others_ && map_.quaternion_order)
+      poses_.notes.emplace_back(
+          "'quaternion_order' of the map says nothing here: no orientation is four numbers in a "
+          "row");
     if (std::string note = source_.Note(); !note.empty()) poses_.notes.push_back(std::move(note));
     RefuseAbsentBodies(poses_, map_, errors_);
     if (!errors_.empty()) return tl::unexpected(errors_.Sorted());

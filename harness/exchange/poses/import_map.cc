@@ -54,6 +54,11 @@ void CheckOrientation(const ImportMap& map, DiagnosticList& errors) {
     errors.Add(columns.quaternion.front().where,
                "quaternion_order is missing: which of the four columns is w",
                "quaternion_order: xyzw, if w is the last; wxyz, if it is the first");
+  if (map.quaternion_order && columns.quaternion.empty() && !columns.Orientation().empty())
+    errors.Add(map.quaternion_order->where,
+               fmt::format("'quaternion_order' says nothing here: the file has {}",
+                           columns.matrix.empty() ? "angles" : "matrices"),
+               "leave it out; or columns.quaternion names four columns");
   const auto& angles = columns.euler.empty() ? columns.axis_angle : columns.euler;
   if (!angles.empty() && !map.angles_in_degrees)
     errors.Add(angles.front().where, "angle_unit is missing: what the angles are in",
@@ -366,7 +371,9 @@ Eigen::Quaterniond ImportMap::AxesTurn() const {
 }
 
 Eigen::Quaterniond ImportMap::WorldTurn() const {
-  return up ? Eigen::Quaterniond::FromTwoVectors(Up(), Eigen::Vector3d::UnitZ()) : AxesTurn();
+  const Eigen::Quaterniond turn = AxesTurn();
+  return up ? Eigen::Quaterniond::FromTwoVectors(turn * Up(), Eigen::Vector3d::UnitZ()) * turn
+            : turn;
 }
 
 Eigen::Vector3d ImportMap::Up() const {

@@ -180,8 +180,8 @@ struct ImportMap {
   OrientationFormat Orientation() const;
   /// From the file's axes to those of which `axes` is z: of positions, and of bodies' own axes.
   Eigen::Quaterniond AxesTurn() const;
-  /// From the file's axes to the recording's, z up: of positions. `up` turns the world, the
-  /// shortest way, and not the bodies' own axes.
+  /// From the file's axes to the recording's, z up: of positions. Where `axes` has left it, `up`
+  /// turns the world on, the shortest way, and not the bodies' own axes.
   Eigen::Quaterniond WorldTurn() const;
   /// In the file's axes.
   Eigen::Vector3d Up() const;
