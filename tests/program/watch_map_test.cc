@@ -221,7 +221,7 @@ const std::string kJsonMap =
 
 TEST(WatchMap, LinesOfJsonAreReadByThePathsOfTheMap) {
   const std::string all = Rows([](int i) { return JsonFrame(i); });
-  ExpectTheEventsOfImport("{\"device\": \"of a tracker\"}\n" + all, kJsonMap, "take.ndjson");
+  ExpectTheEventsOfImport(all, kJsonMap, "take.ndjson");
   ExpectTheEventsOfImport(all, Replaced(kJsonMap, "t: t\ntime_unit: ms", "rate_hz: 60"),
                           "take.json");
   std::string rows;  // one body a line
@@ -236,6 +236,20 @@ TEST(WatchMap, LinesOfJsonAreReadByThePathsOfTheMap) {
        {std::pair("objects[name=Cup].pos", "[n=Cup].p"), {"hands[type=right].palm", "[n=Hand].p"}})
     by_rows = Replaced(by_rows, was, is);
   ExpectTheEventsOfImport(rows, by_rows, "rows.jsonl");
+  // What has no time is left out, and is told, as `import` does.
+  const Watched untimed =
+      Watch(Rows([](int i) {
+              return i % 100 == 0 ? Replaced(JsonFrame(i), "\"t\"", "\"u\"") : JsonFrame(i);
+            }),
+            kJsonMap, {"--json"}, "take.ndjson");
+  EXPECT_EQ(untimed.said.exit_code, 0) << untimed.said.err;
+  EXPECT_NE(untimed.said.err.find("take.ndjson:1:1: warning: it has no time, or nothing that the "
+                                  "map asks for, and is left out"),
+            std::string::npos)
+      << untimed.said.err;
+  EXPECT_NE(untimed.said.err.find("lines in all, the first: it has no time"), std::string::npos)
+      << untimed.said.err;
+  EXPECT_NE(untimed.said.out.find("grasping"), std::string::npos);
   // What is lost for a while, and lines that are none.
   const Watched lost =
       Watch(Rows([](int i) { return i == 50 || i == 60 ? "{\"t\": 3" : JsonFrame(i, i < 250); }),

@@ -113,7 +113,7 @@ class LineWatcher {
   ExitCode Watch(std::istream& in, const ParsedOptions& options) {
     while (!stream_.has_header()) {
       if (!Take(in)) return EndsTooEarly();
-      if (!wrong_.empty()) return Complain(context_, wrong_);
+      if (!wrong_.empty() && !wrong_.front().is_warning) return Complain(context_, wrong_);
     }
     const grammar::EntityTable& entities = stream_.header().entity_table;
     const Result<grammar::Overrides> settings = episode::ParameterSettings(options.All("--set"));
@@ -175,7 +175,7 @@ class LineWatcher {
 
   void Count(const grammar::Diagnostics& wrong) {
     if (wrong.empty()) return;
-    ++skipped_;
+    if (!wrong.front().is_warning) ++skipped_;
     std::string kind = wrong.front().message;
     std::erase_if(kind, [](unsigned char c) { return std::isdigit(c) || c == '.'; });
     if (faults_.size() >= kMostKinds && !faults_.contains(kind)) kind = "others";

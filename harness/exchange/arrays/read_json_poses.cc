@@ -212,6 +212,12 @@ class JsonRows : public RowSource {
       begin = end + 1;
       ++line_;
     }
+    if (is_line_ && count_ + left_out_ == 1 && left_out_ == 1) {
+      grammar::Diagnostic left_out = grammar::DiagnosticAt(
+          file_, text_, {1, 1}, fmt::format("it has {}, and is left out", Lacks()), "");
+      left_out.is_warning = true;
+      return {std::move(left_out)};
+    }
     if (is_line_) return count_ < 2 ? Diagnostics{} : Diagnostics{ManyFrames()};
     if (count_ + left_out_ == 0 && !map_.frames)
       return {grammar::DiagnosticAt(file_, text_, {1, 1}, "there is no frame in it", "")};
@@ -254,14 +260,18 @@ class JsonRows : public RowSource {
   std::string Note() const override {
     return left_out_ == 0
                ? ""
-               : fmt::format("{} of {} frames have {} that the map asks for", left_out_,
-                             count_ + left_out_, map_.t ? "no time, or nothing" : "nothing");
+               : fmt::format("{} of {} frames have {}", left_out_, count_ + left_out_, Lacks());
   }
   std::vector<int> Lines() const override { return lines_; }
   std::string Columns(const std::string&, std::size_t) const override { return ""; }
   std::size_t count() const { return count_; }
 
  private:
+  /// What frames have that are left out.
+  const char* Lacks() const {
+    return map_.t ? "no time, or nothing that the map asks for" : "nothing that the map asks for";
+  }
+
   grammar::Diagnostic ManyFrames() const {
     return grammar::DiagnosticAt(file_, text_, {1, 1},
                                  fmt::format("a line of {} frames; one was expected", count_), "");
@@ -294,8 +304,7 @@ class JsonRows : public RowSource {
       JsonMiss miss;
       const Json* const value = FindInJson(frame, path.parts.front(), miss);
       has_any = has_any || value;
-      // A line that comes is told what it lacks.
-      if (map_.t && &path == &asked_.front() && !is_line_) has_time = value && !value->is_null();
+      if (map_.t && &path == &asked_.front()) has_time = value && !value->is_null();
       if (!value && path.found == 0 && miss.steps >= path.miss.steps) path.miss = std::move(miss);
     }
     left_out_ += has_any && has_time ? 0 : 1;

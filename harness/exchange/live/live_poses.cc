@@ -85,6 +85,11 @@ grammar::Diagnostics LivePoses::Begin(const std::string& row, episode::EpisodeSt
   if (map_->map.smooth_s > 0 || map_->map.outlier == OutlierRule::kLost)
     notes_.emplace_back(
         "smooth_s and outlier need poses that are still to come: they do nothing here");
+  if (const auto& layout = map_->layout;
+      layout && layout->ends_at_blank && !layout->name.ends_with("(Objects)"))
+    notes_.push_back(layout->name +
+                     ": while rows come, the first part is read; of a whole file `import` reads "
+                     "Objects, or else Segments, where they follow");
   if (!errors.empty()) return errors.Sorted();
   const std::size_t count = map_->map.entities.size();
   samples_.resize(count);
@@ -97,13 +102,15 @@ grammar::Diagnostics LivePoses::Begin(const std::string& row, episode::EpisodeSt
   else
     lines_.emplace(name_, head_, *map_);
   std::istringstream head(head_);
+  grammar::Diagnostics left_out;
   for (std::string line; std::getline(head, line);)
-    if (grammar::Diagnostics wrong = lines_->Take(line); !wrong.empty()) return wrong;
+    if (left_out = lines_->Take(line); !left_out.empty() && !left_out.front().is_warning)
+      return left_out;
   std::ostringstream first;
   episode::EpisodeWriter(first, HeaderOf(*map_, name_));
   grammar::Diagnostics wrong = stream.Take(first.str().substr(0, first.str().find('\n')));
   if (wrong.empty() && lines_->row_s()) wrong = TakeRow(stream);
-  return wrong;
+  return wrong.empty() ? left_out : wrong;
 }
 
 /// What a row says that the frame at its time has already, or "": "'Cup' has two poses at 1 s".
