@@ -64,6 +64,25 @@ json Figures(json score) {
   return score;
 }
 
+TEST_F(Found, RolesThatAnEventDoesNotHaveAreTold) {
+  const std::string take = Take("milk.jsonl");
+  const std::string line =
+      R"({"event": "grasping", "roles": {"hand": "right_hand", "object": "milk", "objct": "table"}, )";
+  const std::string found = Write("milk.found.jsonl", line +
+                                                          R"("begin_s": 1, "end_s": 2})"
+                                                          "\n" +
+                                                          line +
+                                                          R"("begin_s": 3, "end_s": 4})"
+                                                          "\n");
+  const Said said = Prehend({"score", take, "--truth", docs_ + "/labels.csv", "--map",
+                             docs_ + "/labels.yaml", "--grammar", kGrammar, "--found", found});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_EQ(Has(said.err,
+                ": warning: 'grasping' has no role 'objct': it is left out of 2 lines\n"
+                "  hint: did you mean 'object'?\n"),
+            "");
+}
+
 TEST_F(Found, EachKindOfFileHasTheGrammarsOwnRow) {
   const std::string take = Take("milk.jsonl"), truth = docs_ + "/labels.csv";
   const std::vector<std::string> labels = {

@@ -123,7 +123,7 @@ ExitCode RunMerge(const ParsedOptions& options, const CommandContext& context) {
   context.out << fmt::format("{}: {} episodes of {} files", output, merged->episodes, files.size());
   if (merged->twice > 0) context.out << fmt::format("; {} were there twice", merged->twice);
   context.out << "\n" << std::flush;
-  context.err << merged->missing;
+  context.err << merged->notes << merged->missing;
   const int wanted = options.IntOr("--expect", static_cast<int>(files.size()));
   if (wanted != static_cast<int>(files.size()))
     context.err << fmt::format("--expect: found {} files, wanted {}\n", files.size(), wanted);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -127,6 +128,22 @@ struct Source {
   std::vector<Statement> of_event, of_episode;
 };
 
+/// What a file has beside what this program makes: tables, and columns of its own ones, with
+/// commas.
+std::string OthersIn(const Database& file, const Database& own) {
+  const std::string all =
+      "SELECT one.name, of.name FROM sqlite_schema one, pragma_table_info(one.name) of WHERE "
+      "one.type = 'table' AND one.name NOT LIKE 'sqlite~_%' ESCAPE '~'";
+  std::set<std::string> known, others;
+  for (Statement row = own.Prepare(all); row.Step();)
+    known.insert({row.Text(0), row.Text(0) + "." + row.Text(1)});
+  for (Statement row = file.Prepare(all); row.Step();) {
+    const std::string table = row.Text(0), column = table + "." + row.Text(1);
+    if (!known.contains(column)) others.insert(known.contains(table) ? column : table);
+  }
+  return fmt::format("{}", fmt::join(others, ", "));
+}
+
 /// An episode of one of the files.
 struct Found {
   std::string uuid, task, scenario;
@@ -230,7 +247,12 @@ class Merger {
         ++merged.twice;
       }
     };
-    for (std::size_t file = 0; file < files_.size(); ++file) InFile(file, [&] { look(file); });
+    for (std::size_t file = 0; file < files_.size(); ++file) {
+      InFile(file, [&] { look(file); });
+      if (const std::string others = OthersIn(Open(file).database, into_); !others.empty())
+        merged.notes += fmt::format("warning: {}: not copied, as it is none of prehend's: {}\n",
+                                    ReadableName(files_[file]), ReadableName(others));
+    }
     return found;
   }
 

@@ -71,6 +71,7 @@ void WritePlan(const Database& database, const Plan& plan);
 struct Merged {
   std::size_t files = 0, episodes = 0, twice = 0;
   std::string missing;  ///< TextOf() what is complete in none
+  std::string notes;    ///< what is not copied
 };
 /// One file of many: the episodes of plans in the order of these, then the others as they come.
 /// What is complete in none stays away if it is of a plan. The same episode twice becomes one, if

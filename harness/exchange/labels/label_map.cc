@@ -214,7 +214,8 @@ std::string WithoutText(const LabelFile& file) {
   return grammar::Format(warning);
 }
 
-/// Warnings of columns whose names are nearly those of roles, or "".
+/// Warnings of columns whose names are nearly those of roles, and of roles in lines of JSON that
+/// the event does not have, or "".
 std::string Misspelt(const LabelFile& file, const Events& events) {
   const std::set<std::string> roles = RolesOf(events);
   std::string warnings;
@@ -223,6 +224,26 @@ std::string Misspelt(const LabelFile& file, const Events& events) {
     if (near.empty() || near == column) continue;
     grammar::Diagnostic warning = file.At(
         {1, 1}, fmt::format("the column '{}' is not read", column), "did you mean '" + near + "'?");
+    warning.is_warning = true;
+    warnings += grammar::Format(warning);
+  }
+  std::map<std::pair<std::string, std::string>, std::size_t> unknown;  // event and role
+  for (const Label& label : file.labels)
+    for (const grammar::Role& role : label.roles) {
+      const EventSignature* event = FindEvent(events, label.text);
+      if (file.roles.empty() && event && std::ranges::count(event->roles, role.name) == 0)
+        ++unknown[{label.text, role.name}];
+    }
+  for (const auto& [what, count] : unknown) {
+    const auto& [event, role] = what;
+    const std::vector<std::string>& known = FindEvent(events, event)->roles;
+    const std::string near = grammar::NearestName(role, known);
+    grammar::Diagnostic warning{
+        .file = file.file,
+        .message = fmt::format("'{}' has no role '{}': it is left out of {}", event, role,
+                               grammar::CountOf(count, "line")),
+        .hint = near.empty() ? fmt::format("it has {}", fmt::join(known, ", "))
+                             : "did you mean '" + near + "'?"};
     warning.is_warning = true;
     warnings += grammar::Format(warning);
   }
