@@ -391,9 +391,13 @@ PYBIND11_MODULE(_prehend, m) {
             return std::pair(why.text, why.json);
           },
           Unlocked())
-      .def("read_labels",
-           [](const Episode& e, const Grammar* grammar, const std::string& file,
-              const std::string& map) { return ToPython(ReadLabels(e, grammar, file, map)); })
+      .def(
+          "read_labels",
+          [](const Episode& e, const Grammar* grammar, const std::string& file,
+             const std::string& map, std::optional<std::size_t> entry) {
+            return ToPython(ReadLabels(e, grammar, file, map, entry));
+          },
+          py::arg("grammar"), py::arg("file"), py::arg("map"), py::arg("entry") = py::none())
       .def("write_frames", &Episode::WriteFrames, Unlocked())
       .def("write_labels", [](const Episode& e, const Events& events, const std::string& file,
                               const Grammar* grammar) {

@@ -263,7 +263,7 @@ def push_takes(connection, path):
     here, takes, labels = pathlib.Path(path).parent, _Rows(), _Rows()
     said = yaml.safe_load(pathlib.Path(path).read_text(encoding="utf-8"))
     counted, source = [0, 0], pathlib.Path(path).absolute().as_uri()
-    for take in said["takes"]:
+    for entry, take in enumerate(said["takes"]):
         recording, file = here / take["recording"], take.get("labels", said.get("labels"))
         if recording.suffix != ".episodes":
             fail(EpisodeError, f"{path}: {take['recording']} is not kept in an episode file", "prehend import FILE -o NAME.episodes", path)
@@ -274,7 +274,7 @@ def push_takes(connection, path):
             if not file:
                 continue
             compiled = grammar.Grammar(str(take.get("grammar", one.grammar)))._compiled
-            read = one._opened.read_labels(compiled, str(here / file), str(here / said["map"]) if "map" in said else "")
+            read = one._opened.read_labels(compiled, str(path), "", entry)  # with its rows, and by its clock
             for place, (event, roles, begin, end, *_) in enumerate(read):
                 labels.add(uuid, source, place, event, json.dumps(dict(roles)), begin / one.ticks_per_second, end / one.ticks_per_second)
             counted[1] += len(read)

@@ -131,11 +131,17 @@ Explanation Explain(const Episode& episode, const Grammar* grammar, const std::s
 }
 
 grammar::Timeline ReadLabels(const Episode& episode, const Grammar* grammar,
-                             const std::string& file, const std::string& map) {
+                             const std::string& file, const std::string& map,
+                             std::optional<std::size_t> entry) {
   return episode.impl().With(grammar, [&](episode::Episode& opened) {
     const grammar::EntityTable table = opened.entities();
-    const auto reading = Unwrap(
-        exchange::ReadTruths(episode::TakesOf({opened.name()}), {file}, map, *opened.program()));
+    std::vector<episode::Take> takes = episode::TakesOf({opened.name()});
+    if (entry) {
+      takes.front() = Unwrap(episode::ReadTakes(file)).at(*entry).take;
+      takes.front().episode = opened.name();
+    }
+    const auto reading = Unwrap(exchange::ReadTruths(
+        takes, entry ? std::vector<std::string>() : std::vector{file}, map, *opened.program()));
     Unwrap(reading.Truth(0, table.entities, table.ticks_per_second, episode.end()));
     return reading.Marked(0, table.ticks_per_second, episode.end(), true);
   });

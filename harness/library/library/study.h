@@ -3,6 +3,7 @@
 // Tested by tests/python/test_study.py
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,9 +40,10 @@ PREHEND_API Explanation Explain(const Episode& episode, const Grammar* grammar,
                                 const std::string& event);
 
 /// Labels by people as events of an episode: .csv, .eaf, .TextGrid; `map`: a file, or ""
-/// (docs/labels.md).
+/// (docs/labels.md). With `entry` those that this one of a file of takes, from 0, has.
 PREHEND_API grammar::Timeline ReadLabels(const Episode& episode, const Grammar* grammar,
-                                         const std::string& file, const std::string& map);
+                                         const std::string& file, const std::string& map,
+                                         std::optional<std::size_t> entry = {});
 
 /// Somebody's text, and what is strange in the labels: lines.
 using Warned = std::pair<std::string, std::string>;
