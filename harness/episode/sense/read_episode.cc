@@ -227,6 +227,11 @@ class EpisodeReader {
     const auto add = [&](const std::string& what, const char* hint = "") {
       errors.Add(entry.name_where, fmt::format("'{}': {}", entry.name, what), hint);
     };
+    if (entry.name == "any") add("this name stands for everybody, in claims and queries");
+    if (m.round && (m.size_m.array() != m.size_m.x()).any())
+      add(fmt::format("round: it is a ball, and its edges are {:g}, {:g} and {:g} m", m.size_m.x(),
+                      m.size_m.y(), m.size_m.z()),
+          "size_m: three times its diameter");
     std::vector<std::string> own = RootsOf(m);
     if (m.person) own.insert(own.end(), {"Person", "BodyPart"});
     if (const std::string wrong = grammar::WrongRoot(classes, own); !wrong.empty() && !m.hand)

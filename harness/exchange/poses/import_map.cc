@@ -247,6 +247,10 @@ void CheckMap(const ImportMap& map, PoseFormat format, const YamlNode& root,
   for (const Named<MappedEntity>& entity : map.entities) {
     const MappedEntity& e = entity.value;
     tracked = tracked || e.from;
+    if (entity.name == "any")
+      errors.Add(
+          entity.name_where,
+          "'any': this name stands for everybody, in claims and queries; wanted another one");
     CheckDatasets(entity, format, errors);
     CheckOpenings(entity, format, errors);
     CheckTwice(e.markers, "marker has a name", errors);

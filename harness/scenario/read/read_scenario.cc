@@ -56,7 +56,14 @@ void CheckNames(const std::string& file, const ScenarioYaml& entry, const Scenar
       errors.Find({grammar, entry.grammar.where}, "grammar", library.grammars, "grammar");
     }
   }
+  const auto check_any = [&](const auto& named) {
+    if (named.name == "any")
+      errors.Add(named.name_where, "'any': this name stands for everybody, in claims and queries",
+                 "choose another name");
+  };
+  std::ranges::for_each(entry.entities, check_any);
   for (const auto& actor : entry.actors) {
+    check_any(actor);
     const bool taken = std::any_of(entry.entities.begin(), entry.entities.end(),
                                    [&](const auto& entity) { return entity.name == actor.name; });
     if (taken)
