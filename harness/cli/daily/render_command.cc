@@ -147,6 +147,12 @@ show::PictureResult DrawSheet(const ParsedOptions& options, const scenario::Scen
   return result;
 }
 
+/// Below the project's build folder, or, for who is somewhere else, below one there.
+fs::path PicturesFolder(const std::string& root, const scenario::Scenario& scenario) {
+  const fs::path folder = fs::path(IsCalledIn(root) ? BuildFolder(root) : "build") / "pictures";
+  return scenario.skill.empty() ? folder : folder / scenario.skill;
+}
+
 show::PictureResult Draw(const ParsedOptions& options, const episode::LoadedRun& loaded,
                          const episode::RunResult& run, const std::string& root) {
   const std::string output = options.Text("--output");
@@ -155,7 +161,7 @@ show::PictureResult Draw(const ParsedOptions& options, const episode::LoadedRun&
   if (!output.empty())
     return show::DrawPicture(loaded.scenario, run, loaded.scenario.pictures.front(), output,
                              format);
-  const fs::path folder = fs::path(BuildFolder(root)) / "pictures" / loaded.scenario.skill;
+  const fs::path folder = PicturesFolder(root, loaded.scenario);
   std::error_code error;
   fs::create_directories(folder, error);
   return show::DrawPictures(loaded.scenario, run, folder.string(), format);
@@ -223,9 +229,7 @@ ExitCode WriteOut(const std::string& svg, const ParsedOptions& options,
                   const scenario::Scenario& scenario, const std::string& ending,
                   const CommandContext& context) {
   const fs::path file = options.TextOr(
-      "--output",
-      (fs::path(BuildFolder(context.root)) / "pictures" / scenario.skill / (scenario.name + ending))
-          .string());
+      "--output", (PicturesFolder(context.root, scenario) / (scenario.name + ending)).string());
   const std::string problem = show::WriteDrawing(file, svg, PixelsOf(options));
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   context.out << file.string() << "\n";

@@ -222,7 +222,10 @@ std::vector<Cause> CausesOf(const std::vector<ScenarioVerdict>& verdicts) {
   for (const ScenarioVerdict& verdict : verdicts) {
     if (verdict.verdict != Verdict::kFailed && verdict.verdict != Verdict::kFlaky) continue;
     if (verdict.attributions.empty()) {
-      add("", {"", KindOfReason(verdict.reason)}, verdict, verdict.command);
+      // A check would say the same again; why each event is as it is, does not stand there yet.
+      const bool is_claim = verdict.reason.starts_with("expects:") && !verdict.explain.empty();
+      add("", {"", KindOfReason(verdict.reason)}, verdict,
+          is_claim ? verdict.explain : verdict.command);
       continue;
     }
     for (const Attribution& difference : verdict.attributions) {
