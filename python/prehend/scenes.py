@@ -118,7 +118,7 @@ class Scene:  # pylint: disable=too-many-instance-attributes
 
     # What happens.
     def do(self, hand, action, base_s=None, **more):
-        keys = {**more, **({"over_s": number(base_s * self.pace * self.draw.of(self.recipe["step"]))} if base_s else {})}
+        keys = {**more, **({"over_s": number(max(0.01, base_s * self.pace * self.draw.of(self.recipe["step"])))} if base_s else {})}
         self.script.append(f"  - {hand}: {{{action}{''.join(f', {k}: {v}' for k, v in keys.items())}}}\n")
 
     def pause(self, hand):
@@ -128,7 +128,7 @@ class Scene:  # pylint: disable=too-many-instance-attributes
 
     def wait(self, hands):
         """Before the first step: so that the time since the beginning tells nothing."""
-        waits = number(self.draw.of(self.recipe["rest_s"]))
+        waits = number(max(0.01, self.draw.of(self.recipe["rest_s"])))
         self.script += [f"{'    ' if i else '  - '}{hand}: {{wait_s: {waits}}}\n" for i, hand in enumerate(hands)]
 
     def wander(self, hands, x_most):
