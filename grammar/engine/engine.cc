@@ -276,6 +276,7 @@ void Engine::Rest(RuleInstance& instance) {
   const bool is_known = instance.known > history_.now();
   if (!instance.open || (instance.certain && !instance.in_gap) || is_known) instance.known = kNever;
   if (!instance.open) idle_.Queue(instance);
+  if (!following_.empty()) StopFollowers(instance);
   // No end leads back over a frame in which nothing led on.
   if (RuleOf(instance).form() == Form::kUntilSince) RestsFarApart(instance);
 }

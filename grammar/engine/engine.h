@@ -215,6 +215,7 @@ class Engine final {
   void TellFollowers(RuleInstance& instance);
   void AskWhetherFollowersRest(RuleInstance& instance);
   void LetFollowersRest(RuleId rule);
+  void StopFollowers(const RuleInstance& resting);
   void LookAhead(RuleId rule);
   Kleene StaysAt(RuleInstance& instance, FrameNumber frame);
 

@@ -528,6 +528,20 @@ void Engine::LetFollowersRest(RuleId rule) {
   may_rest_[rule].clear();
 }
 
+// Who rests is told when what it asks about is known no longer. One that follows tells nobody: it
+// does so no more, if it is known now.
+void Engine::StopFollowers(const RuleInstance& resting) {
+  ForEachReference(resting, [&](InstanceId index) {
+    RuleInstance& other = instances_[index];
+    if (!other.follows || other.known <= history_.now()) return;
+    const FrameNumber next = other.next, known = other.known;
+    StopWaiting(other);
+    other.next = next;  // its turn in this frame is over, so what it decided counts
+    other.known = known;
+    other.reported = instances_.TruthAt(index, history_.now());
+  });
+}
+
 // A frame that was held: who follows holds later ones as it gets on.
 FrameNumber Engine::HeldFrom(const RememberedPast::Held& held) {
   constexpr FrameNumber kFramesBetween = 64;

@@ -20,9 +20,10 @@ constexpr std::array<const char*, kRoles> kNames = {"p", "q", "r"};
 constexpr std::array<const char*, kRoles> kClasses = {"P", "Q", "R"};
 
 unsigned RolesOf(const Term& term) {
-  unsigned roles = term.kind == Kind::kTouch  ? 1U << term.which
-                   : term.kind == Kind::kRule ? term.named
-                                              : 0;
+  unsigned roles = term.kind == Kind::kTouch   ? 1U << term.which
+                   : term.kind == Kind::kHighP ? kP
+                   : term.kind == Kind::kRule  ? term.named
+                                               : 0;
   for (const Term& arg : term.args) roles |= RolesOf(arg);
   return roles;
 }
@@ -72,7 +73,7 @@ class Maker {
 
   void MakeConditions(RandomRule& rule) {
     if (rule.form == Form::kWhile) {
-      rule.first = Condition(3);
+      rule.first = rules_.empty() || Below(3) != 0 ? Condition(3) : LooksAsWell();
       rule.has_second = Sometimes();
       if (rule.has_second) rule.second = Condition(2, Sometimes() ? "begin" : "");
       if (Sometimes()) rule.bridging = 1 + static_cast<Tick>(Below(4));
@@ -172,6 +173,7 @@ class Maker {
   Term Condition(int depth, const std::string& anchor = "") {
     const unsigned choice = Below(depth > 0 ? 10 : 5);
     if (Below(12) == 0) return Rising(anchor);
+    if (Below(12) == 0) return rules_.empty() ? Term{.kind = Kind::kGrip} : LooksAsWell();
     if (depth > 0 && Below(10) == 0) return Known(Condition(depth - 1, anchor));
     switch (choice) {
       case 0:
@@ -244,6 +246,14 @@ class Maker {
             .window = 1 + static_cast<Tick>(Below(9))};
   }
 
+  // Of others, which may be known later than what it looks at itself, one sooner than the other.
+  Term LooksAsWell() {
+    Term others = CallOfSome();
+    if (Below(2) == 0) others = {.kind = Kind::kAnd, .args = {CallOfSome(), std::move(others)}};
+    const Kind looks = Below(2) == 0 ? Kind::kHighP : Kind::kGrip;
+    return {.kind = Kind::kAnd, .args = {std::move(others), {.kind = looks}}};
+  }
+
   Term Touch() { return {.kind = Kind::kTouch, .which = static_cast<int>(Below(kRoles))}; }
 
   // In a condition it may count who plays `any`.
@@ -280,6 +290,10 @@ class Writer {
     switch (term.kind) {
       case Kind::kTouch:
         return std::string("touching(x, ") + kNames[term.which] + ")";
+      case Kind::kGrip:
+        return "(trigger(x) >= 0.5)";
+      case Kind::kHighP:
+        return "height(p) >= 2 m";
       case Kind::kHigh: {
         const std::string value = std::to_string(term.value) + " m";
         return term.anchor.empty() ? "height(x) >= " + value
@@ -425,7 +439,7 @@ RandomEpisode MakeEpisode(std::mt19937_64& random, int frames, unsigned calm) {
   int height = 0;
   Tick tick = static_cast<Tick>(random() % 5);
   const bool uneven = random() % 2 == 0;
-  bool is_lost = false;
+  bool is_lost = false, grips = false;
   const unsigned lost_each = random() % 2 == 0 ? 2 * calm : 0;
   for (int i = 0; i < frames; ++i) {
     if (lost_each > 0 && random() % (is_lost ? calm : lost_each) == 0) is_lost = !is_lost;
@@ -436,6 +450,8 @@ RandomEpisode MakeEpisode(std::mt19937_64& random, int frames, unsigned calm) {
     }
     if (random() % calm == 0) height = static_cast<int>(random() % 4);
     episode.height_m.push_back(height);
+    if (random() % calm == 0) grips = !grips;
+    episode.grips.push_back(grips);
     episode.ticks.push_back(tick);
     tick += 1 + static_cast<Tick>(uneven && random() % 4 == 0 ? random() % 6 : 0);
   }
@@ -454,6 +470,8 @@ std::string Drawn(const RandomEpisode& episode) {
   text += "z  ";
   for (int i = 0; i < episode.frames(); ++i)
     text += episode.lost[i] ? "?" : std::to_string(episode.height_m[i]);
+  text += "\ngrip ";
+  for (const bool grips : episode.grips) text += grips ? '#' : '.';
   text += "\nticks";
   for (const Tick tick : episode.ticks) text += " " + std::to_string(tick);
   return text + "\n";
@@ -491,10 +509,13 @@ void EpisodeFeed::Step(Shown shown, std::vector<Event>& events) {
   const std::array changes = {EntityChange{.entity = 2, .look = looks_[2]},
                               EntityChange{.entity = 0, .look = looks_[0]}};
   const CollisionSphere surface{.p_W_m = looks_[0].p_WB_m};
-  const HandSample hand{.entity = 0, .collision_spheres = {&surface, 1}};
+  const HandSample hand{.entity = 0,
+                        .trigger = episode_.grips[frame] ? 1.0 : 0.0,
+                        .collision_spheres = {&surface, 1}};
   const bool moves = frame == 0 || episode_.height_m[frame] != episode_.height_m[frame - 1] ||
                      episode_.lost[frame] != episode_.lost[frame - 1];
   const std::size_t shows_pose = moves || shown != Shown::kNew ? 1 : 0;
+  const bool pulls = frame > 0 && episode_.grips[frame] != episode_.grips[frame - 1];
   if (shown == Shown::kWhole)
     return monitor_.Advance({.tick = episode_.ticks[frame],
                              .entities = looks_,
@@ -504,7 +525,7 @@ void EpisodeFeed::Step(Shown shown, std::vector<Event>& events) {
   monitor_.AdvanceBy(
       {.tick = episode_.ticks[frame],
        .entities = std::span(changes).subspan(frame == 0 ? 0 : 1, frame == 0 ? 2 : shows_pose),
-       .hands = {&hand, shows_pose},
+       .hands = {&hand, pulls ? 1 : shows_pose},
        .touches = touches_,
        .contact_ends = contact_ends},
       events);

@@ -17,10 +17,11 @@
 
 namespace prehend::grammar::testing {
 
-/// What happens to x: whom it touches (p1, p2, q, r), how high it is, and where nobody knows that.
-/// One tick is 1 ms.
+/// What happens to x: whom it touches (p1, p2, q, r), how high it is, where nobody knows that, and
+/// whether it grips. One tick is 1 ms.
 struct RandomEpisode {
   std::array<reference::Stream, 4> touches;
+  reference::Stream grips;
   std::vector<int> height_m;
   reference::Stream lost;
   reference::Ticks ticks;  ///< and the end
@@ -68,7 +69,21 @@ inline constexpr unsigned kP = 1;
 
 /// A truth value made of facts and rules.
 struct Term {
-  enum class Kind { kTouch, kHigh, kRising, kOfWindow, kRule, kAnd, kOr, kNot, kKnown, kEdge };
+  /// kHighP: of p, which stays where it is.
+  enum class Kind {
+    kTouch,
+    kGrip,
+    kHigh,
+    kHighP,
+    kRising,
+    kOfWindow,
+    kRule,
+    kAnd,
+    kOr,
+    kNot,
+    kKnown,
+    kEdge
+  };
   Kind kind = Kind::kHigh;
   int which = 0;       ///< kTouch: role; kRule: rule
   unsigned named = 0;  ///< kRule: roles that are named; the others are `any`

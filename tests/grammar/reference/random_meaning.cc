@@ -65,6 +65,10 @@ class Meaning {
     switch (term.kind) {
       case Kind::kTouch:
         return known(e_.touches[term.which == 0 ? p : term.which + 1]);
+      case Kind::kGrip:
+        return known(e_.grips);
+      case Kind::kHighP:
+        return known(Stream(n_, p == 1));
       case Kind::kHigh:
         return compared(term.value, false, [&](int i) { return Height(i); });
       case Kind::kRising:

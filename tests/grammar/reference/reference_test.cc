@@ -326,6 +326,7 @@ event rule2(x: Hand, p: P, q: Q, r: R)
   for (const char high : std::string("0000002222222222222222222222200"))
     episode.height_m.push_back(high - '0');
   episode.lost.assign(episode.height_m.size(), false);
+  episode.grips = episode.lost;
   episode.ticks = {0,  1,  2,  3,  4,  10, 11, 13, 14, 16, 17, 18, 19, 20, 26, 27,
                    28, 34, 35, 36, 37, 40, 41, 42, 43, 44, 50, 51, 52, 53, 58, 59};
   const auto decided = [&](const std::shared_ptr<const Program>& by) {
@@ -336,6 +337,52 @@ event rule2(x: Hand, p: P, q: Q, r: R)
     return testing::Lines(events, *program);
   };
   EXPECT_EQ(decided(program), decided(testing::Thorough(*program)));
+}
+
+// As long as the hand does not grip, `gripped` is known to be false, though `late` is not: who asks
+// about it rests. When the hand grips, that is not known any more.
+TEST(Reference, WhoRestsIsToldThatAnotherIsKnownNoLonger) {
+  using testing::Scene;
+  const std::string rules = R"(grammar t
+condition late(h: Hand, o: Movable)
+  from touching(o, h) ends to mean(height(o), 100 ms) > 55.3 mm begins within 67 ms
+condition gripped(h: Hand, o: Movable) while late(h, o) and trigger(h) >= 0.4
+condition above(h: Hand, o: Thing) while height(o) > 0 cm and height(h) < 1 m
+event e(h: Hand, o: Thing) )";
+  const std::pair<std::string, std::string> cases[] = {
+      {"while above(h, o) and gripped(h, any) and height(o) < 50 cm", "280..300"},
+      {"while above(h, o) until gripped(h, any) and height(o) < 50 cm", "20..280; 300..500"},
+      {"while above(h, o) and not (gripped(h, any) and height(o) < 50 cm)", "20..280; 300..500"},
+      {"from above(h, o) begins to (gripped(h, any) and height(o) < 50 cm) begins", "20..280"},
+      {"from above(h, o) begins to height(o) > 5 m begins during not gripped(h, any)", "20..280"},
+      {"from above(h, o) begins without (gripped(h, any) and height(o) < 50 cm) begins within 300 "
+       "ms",
+       ""}};
+  const std::string touched = "...#.#..#.#..#...........", gripped = "....#####.....###########";
+  for (const auto& [form, held] : cases) {
+    Scene scene;
+    const auto program = testing::CompileText(rules + form + "\n");
+    Monitor monitor(program, scene.entity_table);
+    std::vector<Event> events;
+    for (std::size_t i = 0; i < touched.size(); ++i) {
+      scene.looks[Scene::kTray].p_WB_m.z() = i == 0 ? 0 : 0.07;
+      scene.looks[Scene::kCup].p_WB_m.z() = i == 0 ? 0 : i < 10 ? 0.08 : i < 16 ? 0.02 : 0.12;
+      scene.hand.trigger = gripped[i] == '#' ? 0.6 : 0;
+      scene.touches.clear();
+      if (touched[i] == '#') scene.touches = {{.a = Scene::kHand, .b = Scene::kCup}};
+      monitor.Advance(scene.At(20 * static_cast<Tick>(i)), events);
+    }
+    monitor.Finish(500, events);
+    for (const int thing : {Scene::kCup, Scene::kTray}) {
+      std::string found;
+      for (const Event& event : events) {
+        if (program->rules[event.rule].name != "e" || event.roles[1] != thing) continue;
+        found += (found.empty() ? "" : "; ") + std::to_string(event.interval.begin) + ".." +
+                 std::to_string(event.interval.end);
+      }
+      EXPECT_EQ(found, held) << form << ", of " << scene.entity_table.entities[thing].name;
+    }
+  }
 }
 
 // `reference_run` does the same for as many ticks as one likes.

@@ -243,6 +243,7 @@ TrialResult TryAllEpisodes(std::uint64_t seed, int grammars, int frames) {
         episode.touches[3].push_back(bit(i, 2));
         episode.height_m.push_back(bit(i, 0) + 2 * bit(i, 2));
         episode.lost.push_back(false);
+        episode.grips.push_back(bit(i, 2));
         episode.ticks.push_back(i);
       }
       episode.ticks.push_back(frames);
