@@ -224,6 +224,7 @@ class Engine final {
   bool StepFrame(RuleInstance& instance);
   bool LooksTheSame(RuleInstance& instance);
   bool StepWhile(RuleInstance& instance, FrameNumber frame);
+  Span EndOfParts(const RuleInstance& instance, Moment now) const;
   bool StepRepeat(RuleInstance& instance, FrameNumber frame);
   bool StepAny(RuleInstance& instance, FrameNumber frame);
   bool StepOwners(RuleInstance& instance, FrameNumber frame);

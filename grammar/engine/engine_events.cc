@@ -183,7 +183,8 @@ void Engine::FinishInstance(RuleInstance& instance, Moment end) {
   if (instance.open && instance.in_gap) {
     Close(instance, instance.gap);
   } else if (instance.open && (from_to == nullptr || !from_to->or_drop)) {
-    Close(instance, end, true);
+    const Span last = EndOfParts(instance, end);
+    Close(instance, last.end, last.open_end);
   } else if (instance.open) {
     Note(instance, fate::Unfinished{}, {instance.begin, end});
   }

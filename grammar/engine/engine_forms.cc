@@ -97,16 +97,46 @@ bool Engine::StepWhile(RuleInstance& instance, FrameNumber frame) {
   return StepRun(instance, frame, truth);
 }
 
+// Where the last of the intervals ends that a series, or a rest, is made of: an absence may do so
+// between the frame before and this one.
+Span Engine::EndOfParts(const RuleInstance& instance, Moment now) const {
+  const auto* holds = RuleOf(instance).If<WhileRule>();
+  const auto* rest = RuleOf(instance).If<RestOfRule>();
+  Span last{.end = now, .open_end = finishing_};
+  bool has_any = false;
+  const auto consider = [&](int slot) {
+    const InstanceId part = instance.references[static_cast<std::size_t>(slot)];
+    if (part == kNone) return;
+    const RingBuffer<Span>& past = instances_[part].past;
+    for (std::size_t i = past.size(); i-- > 0 && past[i].end.frame >= now.frame;) {
+      if (past[i].end.frame != now.frame) continue;
+      const Tick end = past[i].end.tick;
+      const bool as_late = has_any && end == last.end.tick;
+      if (has_any && end < last.end.tick) continue;
+      last.open_end = past[i].open_end || (as_late && last.open_end);
+      last.end.tick = end;
+      has_any = true;
+    }
+  };
+  if (rest != nullptr) consider(rest->whole);
+  if (holds != nullptr) std::ranges::for_each(holds->counted, consider);
+  return last;
+}
+
 // Intervals that follow each other at once are two.
 bool Engine::StepRepeat(RuleInstance& instance, FrameNumber frame) {
   const Evaluator::View view{instance, frame};
-  Kleene truth = Kleene::kFalse;
-  int begun = 0;
+  int holding = 0, begun = 0;
   for (const int slot : RuleOf(instance).As<WhileRule>().counted) {
     const Kleene holds = evaluator_.Holds(slot, view);
     if (holds == Kleene::kUnknown) return false;
-    truth = Or(truth, holds);
+    if (holds == Kleene::kTrue) ++holding;
     if (holds == Kleene::kTrue && evaluator_.Begins(slot, view) == Kleene::kTrue) ++begun;
+  }
+  const Kleene truth = Known(holding > 0);
+  if (instance.open && !instance.in_gap && begun > 0 && begun == holding) {
+    const Moment now = history_.At(frame), ended = EndOfParts(instance, now).end;
+    if (now.tick - ended.tick > TicksOf(instance).bridging && !Close(instance, ended)) return false;
   }
   if (!StepRun(instance, frame, truth)) return false;
   instance.count += begun;
@@ -221,7 +251,7 @@ bool Engine::StepRun(RuleInstance& instance, FrameNumber frame, Kleene truth) {
   } else if (instance.open) {
     if (!instance.in_gap) {
       instance.in_gap = true;
-      instance.gap = now;
+      instance.gap = EndOfParts(instance, now).end;
     }
     // Later frames are later by a tick at least, so a gap of this length cannot be bridged any
     // more.
@@ -244,7 +274,7 @@ bool Engine::StepRest(RuleInstance& instance, FrameNumber frame) {
   const bool new_whole =
       truth == Kleene::kTrue && evaluator_.Begins(rule.whole, view) == Kleene::kTrue;
   if (instance.open && (truth == Kleene::kFalse || new_whole) &&
-      !Close(instance, history_.At(frame)))
+      !Close(instance, EndOfParts(instance, history_.At(frame)).end))
     return false;
   return truth != Kleene::kTrue || instance.open || Open(instance, frame);
 }

@@ -221,7 +221,8 @@ class Meaning:
     def rest_(self, rule, env):
         others = [self.truth(call, env) for call in rule["outside"]]
         inside = lambda one: [one[2] <= i < one[3] and not any(other[i] for other in others) for i in range(self.n)]
-        return [part for one in self.of(rule["rest of"][0], env) for part in self.runs(inside(one))]
+        return [self.frames(part[2], part[3], min(part[1], one[1])) for one in self.of(rule["rest of"][0], env)
+                for part in self.runs(inside(one))]
 
     def compose_(self, rule, env):
         parts = rule["compose"] if "compose" in rule else rule["all of"]
@@ -277,4 +278,5 @@ class Meaning:
                 series[-1].append(one)
             else:
                 series.append([one])
-        return [self.frames(one[0][2], max(other[3] for other in one)) for one in series if len(one) >= rule["at least"]]
+        return [self.frames(one[0][2], max(other[3] for other in one), max(other[1] for other in one))
+                for one in series if len(one) >= rule["at least"]]

@@ -50,6 +50,39 @@ TEST(Forms, WhatComesAtTheDeadlineIsInTime) {
   EXPECT_EQ(WatchTouch(kMissed, {0, 10, 26}, 26).size(), 1u);
 }
 
+// A frame each 10 ticks, touched in two of them: `let_go` ends between frames, and what is made of
+// it ends there, too.
+TEST(Forms, WhatIsMadeOfAnAbsenceEndsWithIt) {
+  const std::string let_go =
+      "condition let_go(h: Hand, c: Cup) from touching(h, c) ends without touching(h, c) begins "
+      "within 15 ms\ncondition never(h: Hand, c: Cup) while touching(h, c) and height(c) > 9 m\n"
+      "event e(h: Hand, c: Cup) ";
+  const auto found = [&](const std::string& form, Tick end) {
+    Scene scene;
+    Monitor monitor(testing::CompileText("grammar t\n" + let_go + form), scene.entity_table);
+    std::vector<Event> events;
+    for (Tick tick = 0; tick < end; tick += 10) {
+      scene.touches.clear();
+      if (tick == 10 || tick == 50) scene.touches = {{.a = Scene::kHand, .b = Scene::kCup}};
+      monitor.Advance(scene.At(tick), events);
+    }
+    monitor.Finish(200, events);
+    std::string text;
+    for (const Event& event : events)
+      text += "[" + std::to_string(event.interval.begin) + "," +
+              std::to_string(event.interval.end) + (event.open_end ? ".. " : ") ");
+    return text;
+  };
+  const std::string both = "[20,35) [60,75) ";
+  for (const Tick end : {70, 100}) {  // 70: the second one ends after the last frame
+    EXPECT_EQ(found("rest of let_go(h, c) outside never(h, c)", end), both);
+    EXPECT_EQ(found("rest of let_go(h, c) outside never(h, c) lasting 1 ms to 15 ms", end), both);
+    EXPECT_EQ(found("repeat let_go(h, c) at least 1, gap at most 24 ms", end), both);
+    EXPECT_EQ(found("repeat let_go(h, c) at least 2, gap at most 24 ms", end), "");
+    EXPECT_EQ(found("repeat let_go(h, c) at least 2, gap at most 25 ms", end), "[20,75) ");
+  }
+}
+
 // A drum is touched in these intervals of ticks; a frame each tick. Each event as "[0,5)@7 x3".
 std::string Drummed(const std::string& text, const std::vector<Interval>& touches) {
   Scene scene;

@@ -233,20 +233,15 @@ class Meaning {
         std::vector<Stream> outside;
         for (std::size_t i = 1; i < rule.calls.size(); ++i)
           outside.push_back(Truth(rule.calls[i], p, 0));
-        return InTicks(reference::RestOf(CallRuns(rule.calls[0], p), outside));
+        return reference::RestOf(Intervals(rule.calls[0], p), outside, e_.ticks);
       }
       case Form::kRepeat: {
-        Runs runs;
-        for (const Term& call : rule.calls) {
-          for (const reference::Run& run : CallRuns(call, p)) runs.push_back(run);
-        }
-        if (rule.within < 0)
-          return InTicks(reference::Repeat(runs, e_.ticks, rule.at_least, rule.bridging));
         Found intervals;
         for (const Term& call : rule.calls) {
           for (const reference::Timed& one : Intervals(call, p)) intervals.push_back(one);
         }
-        return reference::RepeatWithin(intervals, rule.at_least, rule.within);
+        return rule.within < 0 ? reference::Repeat(intervals, rule.at_least, rule.bridging)
+                               : reference::RepeatWithin(intervals, rule.at_least, rule.within);
       }
       case Form::kCompose:
       case Form::kAllOf:

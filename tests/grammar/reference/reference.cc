@@ -241,29 +241,35 @@ Runs UntilSince(const Stream& until, const Anchored& since, const Ticks& ticks, 
   return runs;
 }
 
-Runs RestOf(const Runs& whole, const std::vector<Stream>& outside) {
-  Runs runs;
-  for (const Run& run : whole) {
+std::vector<Timed> RestOf(const std::vector<Timed>& whole, const std::vector<Stream>& outside,
+                          const Ticks& ticks) {
+  std::vector<Timed> rests;
+  for (const auto& [run, lasts, completed] : whole) {
     bool open = false;
     for (int i = run.begin; i < run.end; ++i) {
       const bool covered =
           std::any_of(outside.begin(), outside.end(), [&](const Stream& s) { return s[i]; });
-      if (!covered && !open) runs.push_back({i, i});
+      if (!covered && !open) rests.push_back({{i, i}, {ticks[i], ticks[i]}});
       open = !covered;
-      if (open) runs.back().end = i + 1;
+      if (!open) continue;
+      rests.back().run.end = i + 1;
+      rests.back().ticks.end = std::min(ticks[i + 1], lasts.end);
     }
   }
-  return runs;
+  return rests;
 }
 
-Runs Repeat(Runs runs, const Ticks& ticks, int at_least, Tick gap) {
-  std::ranges::sort(runs, {}, &Run::begin);
-  Runs series;
-  for (std::size_t i = 0; i < runs.size();) {
-    Run whole = runs[i];
+std::vector<Timed> Repeat(std::vector<Timed> intervals, int at_least, Tick gap) {
+  std::ranges::sort(intervals, {}, [](const Timed& one) { return one.ticks.begin; });
+  std::vector<Timed> series;
+  for (std::size_t i = 0; i < intervals.size();) {
+    Timed whole{intervals[i].run, intervals[i].ticks};
     std::size_t next = i + 1;
-    for (; next < runs.size() && ticks[runs[next].begin] - ticks[whole.end] <= gap; ++next)
-      whole.end = std::max(whole.end, runs[next].end);
+    for (; next < intervals.size() && intervals[next].ticks.begin - whole.ticks.end <= gap;
+         ++next) {
+      whole.run.end = std::max(whole.run.end, intervals[next].run.end);
+      whole.ticks.end = std::max(whole.ticks.end, intervals[next].ticks.end);
+    }
     if (static_cast<int>(next - i) >= at_least) series.push_back(whole);
     i = next;
   }

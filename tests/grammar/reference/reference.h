@@ -112,11 +112,12 @@ std::vector<Timed> RepeatWithin(std::vector<Timed> intervals, int at_least, Tick
 /// None of the intervals has a moment between the two.
 bool NothingBetween(const std::vector<Timed>& intervals, const Interval& left,
                     const Interval& right);
-Runs RestOf(const Runs& whole, const std::vector<Stream>& outside);
+std::vector<Timed> RestOf(const std::vector<Timed>& whole, const std::vector<Stream>& outside,
+                          const Ticks& ticks);
 
-/// `repeat`: the longest series of at least so many runs with gaps of at most `gap` ticks; runs of
+/// `repeat`: the longest series of at least so many intervals with gaps of at most `gap` ticks; of
 /// several events, in any order.
-Runs Repeat(Runs runs, const Ticks& ticks, int at_least, Tick gap);
+std::vector<Timed> Repeat(std::vector<Timed> intervals, int at_least, Tick gap);
 
 /// `one .. per ..`: of the runs of several candidates, one at a time. Who has it keeps it as long
 /// as a run of theirs goes on. When it is free, of those who hold at some frame up to `within`

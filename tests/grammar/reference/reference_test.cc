@@ -130,7 +130,8 @@ std::vector<std::pair<std::string, Runs>> Expected(const Episode& e) {
   const Stream in_approach = Truth(approach, n);
   const Runs late =
       Lasting(UntilSince(Ends(bridged, n), And(e.q, Not(e.r)), e.ticks, 9), e.ticks, 2);
-  const Runs remaining = RestOf(bridged, {in_approach, e.r});
+  const Runs remaining =
+      reference::RunsOf(RestOf(reference::InTicks(bridged, e.ticks), {in_approach, e.r}, e.ticks));
   const Stream tangled = And(Not(in_bridged), Or(e.q, Or(in_approach, Truth(remaining, n))));
   return {{"plain", run(e.p)},
           {"bridged", bridged},
