@@ -80,7 +80,9 @@ void LimitWatch::SeeWays(const Snapshot& now) {
   for (std::size_t i = 0; i < before_.size(); ++i) {
     if (!now.MayHaveMoved(i, now.tick - 1)) continue;
     const double way_m = (now.bodies[i].X_WB.p_m - before_[i].p_m).norm();
-    if (way_m > half_m_[i] + thinnest_m_) SeeWay(BodyIndex(i), now);
+    // What a script lets jump goes through nothing.
+    const bool jumps = scene_.bodies[i].kinematic && now.bodies[i].v_WB_m_per_s.isZero();
+    if (way_m > half_m_[i] + thinnest_m_ && !jumps) SeeWay(BodyIndex(i), now);
   }
   const auto entered = entered_;
   for (const auto& [pair, from_m] : entered) SeeWay(pair.first, pair.second, now);

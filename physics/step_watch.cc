@@ -15,6 +15,8 @@ namespace {
 
 /// A limb that ends farther before its goal is noted.
 constexpr double kNotedLimb_m = 0.03;
+/// So is a head that a recording leads farther from its neck.
+constexpr double kNotedHead_m = 0.05;
 /// A joint is noted that misses more than this share of its way,
 constexpr double kNotedJointShare = 0.25;
 /// and more than this, metres or radians.
@@ -62,7 +64,7 @@ bool TouchesJoint(const Scene& scene, HandIndex hand, int joint, const Snapshot&
 }  // namespace
 
 StepWatch::StepWatch(const Scene& scene, const Script& script)
-    : scene_(scene), script_(script), limbs_(scene.persons.size()) {}
+    : scene_(scene), script_(script), limbs_(scene.persons.size()), heads_(scene.persons.size()) {}
 
 void StepWatch::Begin(const std::vector<BegunSteps>& begun, const Snapshot& now) {
   for (const BegunSteps& steps : begun) {
@@ -163,6 +165,8 @@ void StepWatch::SeeArms(const Snapshot& now, const std::vector<PersonPlayer>& pe
         farthest = {now.tick, by_m, persons[i].targets().limbs[static_cast<std::size_t>(limb)].end};
     }
     if (!person.has_body) continue;
+    if (const double by_m = persons[i].HeadIsOffBy(); by_m > heads_[i].by_m)
+      heads_[i] = {.tick = now.tick, .by_m = by_m};
     for (const bool right : {true, false}) {
       const HandIndex hand = right ? person.right_hand : person.left_hand;
       const PartRange parts = PartsOfLimb(person, right ? 0 : 1);
@@ -197,6 +201,11 @@ std::vector<ScriptNote> StepWatch::Notes() const {
   std::vector<ScriptNote> notes = notes_;
   for (std::size_t i = 0; i < limbs_.size(); ++i) {
     const Person& person = scene_.persons[i];
+    if (heads_[i].by_m > kNotedHead_m)
+      notes.push_back({heads_[i].tick, kNone,
+                       person.name + ": recording: her head is " + Millimetres(heads_[i].by_m) +
+                           " from her neck, as a recorded head does not move her body: let her "
+                           "stand, walk or lean below it, or write 'person: head'"});
     for (int limb = 0; limb < 4; ++limb) {
       const Short& farthest = limbs_[i][static_cast<std::size_t>(limb)];
       if (farthest.by_m <= kNotedLimb_m) continue;

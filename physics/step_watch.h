@@ -71,6 +71,7 @@ class StepWatch {
   const Script& script_;
   std::vector<Leading> leading_;
   std::vector<std::array<Short, 4>> limbs_;  ///< by person and limb
+  std::vector<Short> heads_;                 ///< by person, of her neck
   std::map<std::tuple<HandIndex, BodyIndex, BodyIndex>, Met>
       met_;                                                       ///< hand, part of the arm, thing
   std::map<std::pair<std::size_t, BodyIndex>, Entered> entered_;  ///< person, thing

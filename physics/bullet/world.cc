@@ -212,7 +212,7 @@ class BulletWorld final : public World {
 
   void Step(const std::vector<HandCommand>& commands) override;
   void Describe(Snapshot& snapshot) const override;
-  void MoveKinematic(BodyIndex body, const Pose& X_WB) override;
+  void MoveKinematic(BodyIndex body, const Pose& X_WB, bool jumps) override;
   Sight Look(const SightLine& line) const override;
 
  private:
@@ -397,10 +397,11 @@ double BulletWorld::Apart(const ContactSide& a, const ContactSide& b) const {
   return least_m;
 }
 
-void BulletWorld::MoveKinematic(BodyIndex body, const Pose& X_WB) {
+void BulletWorld::MoveKinematic(BodyIndex body, const Pose& X_WB, bool jumps) {
   // Bullet derives the velocity from the previous pose and this one when it steps.
-  const Place& place = At(places_, body);
-  rigids_[place.rigid]->rigid().setWorldTransform(ToBullet(X_WB));
+  btRigidBody& rigid = rigids_[At(places_, body).rigid]->rigid();
+  rigid.setWorldTransform(ToBullet(X_WB));
+  if (jumps) rigid.setInterpolationWorldTransform(rigid.getWorldTransform());
 }
 
 Sight BulletWorld::Look(const SightLine& line) const { return FirstInSight(world_, sides_, line); }

@@ -75,11 +75,16 @@ class PersonPlayer::Resolver {
   void operator()(const HeadPosesStep& head) {
     const TargetState from{.X_WH = player_.targets_.X_WHead};
     player_.head_ = {WaypointTrajectory(from, head.poses), player_.t_s_};
+    player_.head_leaving_.reset();
+    player_.jumps_ = head.poses.front().t_s <= 0;
   }
   void operator()(const BodyPosesStep& body) {
     const Posture from = PostureOf(player_.person_, player_.targets_);
+    const double join_s = body.postures.front().t_s;
     player_.body_ = RecordedBody{PostureTrack(from, body.postures), player_.t_s_};
     player_.leaving_.reset();
+    if (player_.head_leaving_) player_.head_leaving_->progress.duration_s = join_s;
+    player_.jumps_ = join_s <= 0;
   }
 
  private:
@@ -116,6 +121,12 @@ void PersonPlayer::Begin(std::size_t stage, const std::vector<std::size_t>& hand
   for (const std::size_t index : person_steps) {
     const PersonStep& step = script_.stages[stage].person_steps[index];
     if (step.person != index_) continue;
+    if (head_ && !person_.has_body) StandBelowHead();
+    if (head_ || body_) {
+      const Pose& X_WHead = targets_.X_WHead;
+      head_leaving_ = {{X_WHead.p_m - NeckTop(person_, targets_), X_WHead.q},
+                       {0, 1, t_s_, step.over_s}};
+    }
     head_.reset();
     if (body_) {
       leaving_ = Leaving{*targets_.posture, {0, 1, t_s_, step.over_s}};
@@ -202,6 +213,18 @@ void PersonPlayer::StandBelow(const Posture& posture) {
     limbs_[static_cast<std::size_t>(limb)] = LimbMotion{.end = RestOf(limb, person_, targets_).end};
 }
 
+void PersonPlayer::StandBelowHead() {
+  const Pose& X_WHead = targets_.X_WHead;
+  const Vector3d ahead = X_WHead.q * Vector3d::UnitX();
+  if (std::hypot(ahead.x(), ahead.y()) > 1e-6)
+    yaw_ = Motion{.to = std::atan2(ahead.y(), ahead.x())};
+  AimStance();
+  const Vector3d by_m = X_WHead.p_m - HeadToward(person_, NeckTop(person_, targets_), ahead).p_m;
+  x_ = Motion{.to = targets_.X_WS.p_m.x() + by_m.x()};
+  y_ = Motion{.to = targets_.X_WS.p_m.y() + by_m.y()};
+  AimStance();
+}
+
 void PersonPlayer::HoldPosture() {
   if (body_) {
     const Posture posture = body_->track.At(t_s_ - body_->begin_s);
@@ -219,10 +242,10 @@ void PersonPlayer::HoldPosture() {
 void PersonPlayer::TurnHead(const Snapshot& now) {
   if (body_) {
     targets_.X_WHead = HeadOfPosture(person_, targets_);
+    LeaveRecordedHead();
     gaze_.Set(targets_.X_WHead.q * Vector3d::UnitX());
     return;
   }
-  const Vector3d neck = NeckTop(person_, targets_);
   if (head_) {
     targets_.X_WHead = head_->first.At(t_s_ - head_->second).X_WH;
     gaze_.Set(targets_.X_WHead.q * Vector3d::UnitX());
@@ -235,7 +258,18 @@ void PersonPlayer::TurnHead(const Snapshot& now) {
     if (way.norm() > 1e-3) toward = way.normalized();
   }
   gaze_.Turn(toward, 1.0 / scene_.world.rate_hz);
-  targets_.X_WHead = HeadToward(person_, neck, gaze_.head_W());
+  targets_.X_WHead = HeadToward(person_, NeckTop(person_, targets_), gaze_.head_W());
+  LeaveRecordedHead();
+}
+
+void PersonPlayer::LeaveRecordedHead() {
+  if (!head_leaving_) return;
+  const double share = head_leaving_->progress.At(t_s_);
+  if (share >= 1) return head_leaving_.reset();
+  const Vector3d neck = NeckTop(person_, targets_);
+  const Pose &from = head_leaving_->from, &to = targets_.X_WHead;
+  targets_.X_WHead = {neck + from.p_m + share * (to.p_m - neck - from.p_m),
+                      from.q.slerp(share, to.q).normalized()};
 }
 
 void PersonPlayer::AimStance() {
@@ -319,7 +353,8 @@ void PersonPlayer::Advance(const Snapshot& now, World& world) {
   places_ = PlacesOf(person_, targets_, places_);
   touches_ = fixed_.TouchedBy(person_, places_);
   for (std::size_t i = 0; i < places_.size(); ++i)
-    world.MoveKinematic(person_.head + static_cast<int>(i), places_[i]);
+    world.MoveKinematic(person_.head + static_cast<int>(i), places_[i], jumps_);
+  jumps_ = false;
 }
 
 double PersonPlayer::LimbIsShortBy(int limb) const {
@@ -329,6 +364,12 @@ double PersonPlayer::LimbIsShortBy(int limb) const {
   if (!person_.has_body || !is_led) return 0;
   const BodyTargets::Limb& target = targets_.limbs[index];
   return (target.p_W_m - PlaceOf(target.end, person_, targets_)).norm();
+}
+
+double PersonPlayer::HeadIsOffBy() const {
+  if (!head_ || !person_.has_body) return 0;
+  const Vector3d over_neck_m = HeadToward(person_, Vector3d::Zero(), Vector3d::UnitX()).p_m;
+  return (targets_.X_WHead * -over_neck_m - NeckTop(person_, targets_)).norm();
 }
 
 GazeState PersonPlayer::See(const World& world) const {

@@ -35,6 +35,8 @@ class PersonPlayer {
   /// Distance by which a limb ends before the hand of the scene that it follows, or before where
   /// its step wants it, metres; 0 if it does neither. `limb`: index into BodyTargets::limbs.
   double LimbIsShortBy(int limb) const;
+  /// Distance of her recorded head from the neck of her body, metres; 0 without either.
+  double HeadIsOffBy() const;
 
  private:
   /// A minimum-jerk motion of one quantity.
@@ -66,6 +68,11 @@ class PersonPlayer {
     Posture from;
     Motion progress;
   };
+  struct HeadLeaving {  ///< the same of her head: its pose over the end of the neck, along the
+                        ///< world
+    Pose from;
+    Motion progress;
+  };
   class Resolver;
 
   BodyTargets::Limb LimbAt(int limb, const Snapshot& now) const;
@@ -85,7 +92,11 @@ class PersonPlayer {
   double ResistanceTo(int begin, int end, const Eigen::Vector3d& way, const Snapshot& now) const;
   void HoldPosture();
   void StandBelow(const Posture& posture);
+  /// A head without a body stays where its recording ends: her stance comes below it.
+  void StandBelowHead();
   void TurnHead(const Snapshot& now);
+  /// Her head as it is to be now: from where a recording has left it.
+  void LeaveRecordedHead();
 
   const Scene& scene_;
   const Script& script_;
@@ -106,6 +117,8 @@ class PersonPlayer {
   std::optional<std::pair<Trajectory, double>> head_;  ///< recorded motion and its begin, seconds
   std::optional<RecordedBody> body_;
   std::optional<Leaving> leaving_;
+  std::optional<HeadLeaving> head_leaving_;
+  bool jumps_ = false;  ///< in the next tick: a recording begins at once
   EyesAndHead gaze_;
 };
 

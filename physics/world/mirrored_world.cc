@@ -75,8 +75,8 @@ class MirroredWorld final : public World {
     snapshot.resting = Resting();
   }
 
-  void MoveKinematic(BodyIndex body, const Pose& X_WB) override {
-    image_->MoveKinematic(body, InMirror(X_WB));
+  void MoveKinematic(BodyIndex body, const Pose& X_WB, bool jumps) override {
+    image_->MoveKinematic(body, InMirror(X_WB), jumps);
   }
 
   Sight Look(const SightLine& line) const override {

@@ -4,7 +4,7 @@
 
 namespace prehend::physics {
 
-void World::MoveKinematic(BodyIndex, const Pose&) {}
+void World::MoveKinematic(BodyIndex, const Pose&, bool) {}
 Sight World::Look(const SightLine&) const { return {}; }
 
 }  // namespace prehend::physics

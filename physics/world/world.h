@@ -44,8 +44,9 @@ class World {
   /// Writes the present state, reusing the vectors of `snapshot`.
   virtual void Describe(Snapshot& snapshot) const = 0;
 
-  /// Moves a kinematic body there during the next step. Only for scenes with persons.
-  virtual void MoveKinematic(BodyIndex body, const Pose& X_WB);
+  /// Moves a kinematic body there during the next step, or, if it jumps, puts it there at rest.
+  /// Only for scenes with persons.
+  virtual void MoveKinematic(BodyIndex body, const Pose& X_WB, bool jumps);
   /// The first surface that the sphere meets. Only for scenes with persons.
   virtual Sight Look(const SightLine& line) const;
 };

@@ -193,6 +193,79 @@ TEST(PersonPlayerTest, ARecordedPostureIsTakenAndLeft) {
       1e-6);
 }
 
+/// A head that is recorded at these places, each half a second after the one before.
+PersonStep RecordedHead(const std::vector<Vector3d>& places_m, double first_s) {
+  HeadPosesStep step;
+  for (const Vector3d& at_m : places_m) {
+    const double t_s = first_s + 0.5 * static_cast<double>(step.poses.size());
+    step.poses.push_back({.t_s = t_s, .X_WH = {at_m}, .trigger = {}});
+  }
+  return {0, step, step.poses.back().t_s};
+}
+
+TEST(PersonPlayerTest, AfterARecordingOfItTheHeadGoesBackWithinTheNextStep) {
+  Scene scene = Before({2, 2, 0.4});
+  const PersonStep recorded = RecordedHead({{0.2, 0.1, 1.4}, {0.6, 0.3, 1.2}}, 0.5);
+  const auto fastest = [&](const std::vector<PersonStep>& steps) {
+    Script script;
+    for (const PersonStep& step : steps) script.stages.push_back({{}, {step}});
+    Simulation simulation(scene, script);
+    double most_m_per_s = 0;
+    while (simulation.Step())
+      most_m_per_s =
+          std::max(most_m_per_s, simulation.snapshot().body(BodyIndex(kHead)).v_WB_m_per_s.norm());
+    EXPECT_EQ(simulation.status().kind, RunStatus::Kind::kCompleted) << simulation.status().reason;
+    return most_m_per_s;
+  };
+  const std::vector<PersonStep> wait = {recorded, {0, WaitStep{}, 0.5}};
+  const Vector3d at_first = scene.bodies[kHead].X_WB.p_m;
+  const auto end = [&] { return Play(scene, wait).end.body(BodyIndex(kHead)).X_WB.p_m; };
+  EXPECT_LT(fastest(wait), 5);
+  EXPECT_LT((end() - at_first).norm(), 1e-6) << "on its neck";
+  const PersonStep body{
+      0, BodyPosesStep{{{0.4, PostureOf(scene.persons[0], Standing(scene, scene.persons[0]))}}},
+      0.4};
+  EXPECT_LT(fastest({recorded, body}), 6);
+  // A head alone stays where it was recorded: she stands below.
+  scene.persons.front().has_body = false;
+  scene.bodies.resize(kHead + 1);
+  EXPECT_LT(fastest(wait), 2);
+  EXPECT_LT((end() - Vector3d(0.6, 0.3, at_first.z())).norm(), 1e-6);
+}
+
+TEST(PersonPlayerTest, ARecordingThatJoinsAtOnceJumpsWithoutSpeed) {
+  const Scene scene = Before({2, 2, 0.4});
+  Posture there = PostureOf(scene.persons[0], Standing(scene, scene.persons[0]));
+  there.hips_W_m += Vector3d(1, 1, 0);
+  for (const PersonStep& jump : {PersonStep{0, BodyPosesStep{{{0, there}, {0.5, there}}}, 0.5},
+                                 RecordedHead({{1, 1, 1.5}, {1, 1, 1.5}}, 0)}) {
+    Script script;
+    script.stages = {{{}, {{0, WaitStep{}, 0.1}}}, {{}, {jump}}};
+    Simulation simulation(scene, script);
+    while (simulation.Step())
+      for (std::size_t i = kHead; i < scene.bodies.size(); ++i)
+        ASSERT_LT(simulation.snapshot().bodies[i].v_WB_m_per_s.norm(), 1e-6)
+            << scene.bodies[i].name;
+    EXPECT_EQ(simulation.status().kind, RunStatus::Kind::kCompleted) << simulation.status().reason;
+    const Vector3d at_m = simulation.snapshot().body(BodyIndex(kHead)).X_WB.p_m;
+    EXPECT_LT((at_m - Vector3d(1, 1, at_m.z())).norm(), 0.1);
+  }
+}
+
+TEST(PersonPlayerTest, AHeadThatIsRecordedFarFromItsNeckIsNoted) {
+  const Scene scene = Before({2, 2, 0.4});
+  Script script;
+  script.stages = {{{}, {RecordedHead({{0.6, 0.3, 1.2}, {0.6, 0.3, 1.2}}, 0.5)}}};
+  Simulation simulation(scene, script);
+  while (simulation.Step()) {
+  }
+  ASSERT_EQ(simulation.notes().size(), 1u);
+  EXPECT_EQ(
+      simulation.notes()[0].text,
+      "anna: recording: her head is 800 mm from her neck, as a recorded head does not move her "
+      "body: let her stand, walk or lean below it, or write 'person: head'");
+}
+
 TEST(PersonPlayerTest, TheSameStepsGiveTheSameHash) {
   const Scene scene = Before({0.45, -0.09, 0.4});
   const Vector3d there(0.35, -0.09, 0.4);
