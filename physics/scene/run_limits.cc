@@ -21,7 +21,8 @@ std::string Say(const char* format, double value) {
   return text;
 }
 
-std::optional<RunProblem> CheckState(const std::string& name, const BodyState& state) {
+std::optional<RunProblem> CheckState(const std::string& name, const BodyState& state,
+                                     bool of_person = false) {
   const bool finite = state.X_WB.p_m.allFinite() && state.X_WB.q.coeffs().allFinite() &&
                       state.v_WB_m_per_s.allFinite() && state.w_WB_rad_per_s.allFinite();
   if (!finite)
@@ -29,8 +30,12 @@ std::optional<RunProblem> CheckState(const std::string& name, const BodyState& s
                       "look for zero sizes, extreme masses or gains just before this tick"};
   if (const double speed = state.v_WB_m_per_s.norm(); speed > kMaxSpeed_m_per_s)
     return RunProblem{name, Say("it moves at %.0f m/s", speed),
-                      "it was probably squeezed or started inside another body; give it room or "
-                      "lower the strength"};
+                      of_person
+                          ? "a person goes where her script says: give the step more time "
+                            "('over_s', 'join_s'); an arm or a leg whose end passes its own "
+                            "shoulder or hip closely bends the other way there: lead it around"
+                          : "it was probably squeezed or started inside another body; give it room "
+                            "or lower the strength"};
   if (const double distance = state.X_WB.p_m.norm(); distance > kMaxDistance_m)
     return RunProblem{name, Say("it is %.0f m from the origin", distance),
                       "it left the world; put a floor under it or end the script earlier"};
@@ -101,7 +106,8 @@ std::optional<RunProblem> CheckSnapshot(const Scene& scene, const Snapshot& snap
   for (std::size_t i = 0; i < snapshot.bodies.size(); ++i) {
     if (!snapshot.MayHaveMoved(i, snapshot.tick - 1))
       continue;  // it was checked when it last moved
-    if (auto problem = CheckState(scene.bodies[i].name, snapshot.bodies[i])) return problem;
+    const Body& body = scene.bodies[i];
+    if (auto problem = CheckState(body.name, snapshot.bodies[i], body.kinematic)) return problem;
   }
   for (std::size_t i = 0; i < snapshot.hands.size(); ++i) {
     if (auto problem = CheckState(scene.hands[i].name, snapshot.hands[i].palm)) return problem;

@@ -45,6 +45,18 @@ TEST(RunChecksTest, EveryDisasterIsNamedWithItsEntity) {
   }
 }
 
+TEST(RunChecksTest, APersonWhoIsTooFastIsNotSqueezed) {
+  Scene scene;
+  scene.bodies = {{.name = "anna", .kinematic = true}};
+  Snapshot now;
+  now.bodies.resize(1);
+  now.bodies[0].v_WB_m_per_s.x() = 60;
+  EXPECT_EQ(CheckSnapshot(scene, now)->advice,
+            "a person goes where her script says: give the step more time ('over_s', 'join_s'); an "
+            "arm or a leg whose end passes its own shoulder or hip closely bends the other way "
+            "there: lead it around");
+}
+
 TEST(RunChecksTest, WhatIsPressedIntoAnotherByAHugeMassIsAdvisedOfIt) {
   Scene scene;
   scene.bodies = {{.name = "table", .fixed = true},
