@@ -20,6 +20,7 @@ class ContactHold : public testing::Test {
                 .normal_impulse_n_s = impulse_n_s});
     pairs_.EndTick();
     Snapshot snapshot;
+    snapshot.bodies.resize(2);
     pairs_.Describe(snapshot);
     return !snapshot.contacts.empty();
   }
@@ -51,6 +52,7 @@ TEST_F(ContactHold, WhereNoPointTellsItIsMeasured) {
     pairs_.BeginTick({1, 0});
     pairs_.EndTick([&](const ContactSide&, const ContactSide&) { return apart_m; });
     Snapshot snapshot;
+    snapshot.bodies.resize(2);
     pairs_.Describe(snapshot);
     return !snapshot.contacts.empty();
   };
@@ -59,6 +61,31 @@ TEST_F(ContactHold, WhereNoPointTellsItIsMeasured) {
   int count = 0;
   for (int i = 0; i < 20; ++i) count += touches() ? 1 : 0;
   EXPECT_EQ(count, 4);
+}
+
+TEST_F(ContactHold, InAGapPointsGoAlongWithWhatMoves) {
+  Snapshot now;
+  now.bodies.resize(2);
+  for (int i = 0; i < 30; ++i) {
+    now.bodies[1].X_WB = {{0.1 * i, 0, 0},
+                          Eigen::Quaterniond(Eigen::AngleAxisd(0.1 * i, Eigen::Vector3d::UnitZ()))};
+    pairs_.BeginTick({1, 0});
+    pairs_.Add({.a = {.body = BodyIndex(0)},
+                .b = {.body = BodyIndex(1)},
+                .p_W_m = now.bodies[1].X_WB * Eigen::Vector3d(0.2, 0, 0),
+                .nhat_BA_W = now.bodies[1].X_WB.q * Eigen::Vector3d::UnitX(),
+                .distance_m = kNear_m,
+                .normal_impulse_n_s = i < 20 ? 0.01 : 0});
+    pairs_.EndTick();
+    pairs_.Describe(now);
+    ASSERT_EQ(now.contacts.size(), 1u);
+    EXPECT_LT(
+        (now.bodies[1].X_WB.inverse() * now.contacts[0].p_W_m - Eigen::Vector3d(0.2, 0, 0)).norm(),
+        1e-12)
+        << i;
+    EXPECT_LT((now.bodies[1].X_WB.q * Eigen::Vector3d::UnitX() - now.contacts[0].nhat_BA_W).norm(),
+              1e-12);
+  }
 }
 
 TEST_F(ContactHold, ABlowIsOverHoweverNearTheTwoStay) {
