@@ -29,7 +29,7 @@ Result<MotionTrack> ReadTrack(const std::string& path, const RecordingYaml& entr
              entry.press_s});
 }
 
-/// Only the samples from from_s to to_s, with times since from_s.
+/// Only the samples from from_s to to_s, with times since the first of them.
 template <class Track>
 bool Cut(const RecordingYaml& entry, Track& track, DiagnosticList& errors) {
   auto& samples = track.samples;
@@ -43,8 +43,12 @@ bool Cut(const RecordingYaml& entry, Track& track, DiagnosticList& errors) {
                "without to_s it is played to its end");
     return false;
   }
-  std::erase_if(samples, [&](const auto& s) { return s.t_s < entry.from_s.value || s.t_s > to_s; });
-  for (auto& sample : samples) sample.t_s -= entry.from_s.value;
+  constexpr double kFrame_s = 0.0005;  // frames of 0.0333333 s: 30 of them are 1 s
+  std::erase_if(samples, [&](const auto& s) {
+    return s.t_s < entry.from_s.value - kFrame_s || s.t_s > to_s + kFrame_s;
+  });
+  const double first_s = samples.empty() ? 0 : samples.front().t_s;
+  for (auto& sample : samples) sample.t_s -= first_s;
   if (samples.size() >= 2) return true;
   const Where where = entry.to_s ? entry.to_s->where : entry.from_s.where;
   errors.Add(where,

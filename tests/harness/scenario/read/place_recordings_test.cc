@@ -69,7 +69,7 @@ TEST_F(RecordedInputTest, IsCutTurnedAndShifted) {
       "recording: line.csv, join_s: 0.5, from_s: 0.5, to_s: 1.5, yaw_deg: 90, start_at_m: [0.1, "
       "0.2, 1.0], palm_m: [0, 0, 0.1], palm_rpy_deg: [0, 0, 180]");
   EXPECT_NEAR(static_cast<double>(poses.size()), 91, 1);
-  EXPECT_NEAR(poses.front().t_s, 0.5, 0.012);
+  EXPECT_DOUBLE_EQ(poses.front().t_s, 0.5);
   EXPECT_LT((poses.front().X_WH.p_m - Vector3d(0.1, 0.2, 1.0)).norm(), 1e-9);
   EXPECT_LT((poses.back().X_WH.p_m - Vector3d(0.1, 0.45, 1.0)).norm(), 0.005);
   EXPECT_LT((poses.front().X_WH.q * Vector3d::UnitX() + Vector3d::UnitY()).norm(), 1e-9);
