@@ -53,7 +53,6 @@ class Stacking {
   Stacking(const ScenarioYaml& entry, DiagnosticList& errors) : entry_(entry), errors_(errors) {
     for (const auto& named : entry.entities) {
       index_[named.name] = bodies.size();
-      names_.push_back(named.name);
       bodies.push_back(MakeBody(named));
     }
     progress_.resize(bodies.size(), Progress::kWaiting);
@@ -93,19 +92,14 @@ class Stacking {
     const auto& below = entity.in ? entity.in : entity.on;
     if (!below) return std::nullopt;
     const char* key = entity.in ? "in" : "on";
-    const auto found = index_.find(below->value);
-    if (found == index_.end()) {
-      errors_.AddUnknownName(below->where,
-                             fmt::format("{}: no entity is called '{}'", key, below->value),
-                             below->value, names_);
-      return std::nullopt;
-    }
-    if (const std::string what = WhyNoThing(bodies[found->second]); !what.empty()) {
+    const auto found = FindEntity(entry_, *below, key, errors_);
+    if (!found) return std::nullopt;
+    if (const std::string what = WhyNoThing(bodies[*found]); !what.empty()) {
       errors_.Add(below->where, fmt::format("{}: '{}' is {}, which cannot support anything", key,
                                             below->value, what));
       return std::nullopt;
     }
-    return found->second;
+    return found;
   }
 
   /// The index of a physical body that has been placed already.
@@ -180,7 +174,6 @@ class Stacking {
   const ScenarioYaml& entry_;
   DiagnosticList& errors_;
   std::map<std::string, std::size_t> index_;
-  std::vector<std::string> names_;
   std::vector<Progress> progress_;
   int grains_so_far_ = 0;
 };
@@ -199,7 +192,8 @@ class Relation {
  public:
   /// `to_itself` is the message about a cycle: "is part of itself".
   Relation(const ScenarioYaml& entry, std::string to_itself, DiagnosticList& errors)
-      : to_itself_(std::move(to_itself)),
+      : entry_(entry),
+        to_itself_(std::move(to_itself)),
         errors_(errors),
         target_(entry.entities.size(), grammar::kNoEntity) {
     for (const auto& named : entry.entities) names_.push_back(named.name);
@@ -207,7 +201,7 @@ class Relation {
 
   /// False after an error.
   bool Add(std::size_t i, const std::string& key, const Located<std::string>& name) {
-    const auto found = errors_.Find(name, key, names_);
+    const auto found = FindEntity(entry_, name, key, errors_);
     if (!found) return false;
     target_[i] = static_cast<int>(*found);
     if (!LeadsBackTo(i)) return true;
@@ -236,6 +230,7 @@ class Relation {
     return next != grammar::kNoEntity;
   }
 
+  const ScenarioYaml& entry_;
   const std::string to_itself_;
   DiagnosticList& errors_;
   std::vector<std::string> names_;

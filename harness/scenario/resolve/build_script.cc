@@ -43,6 +43,7 @@ physics::TimedPose TimedPoseOf(const PoseYaml& pose) {
 
 /// Builds a step from each kind of entry; the names in it must be those of the scenario.
 struct StepMaker {
+  const ScenarioYaml& entry;
   const std::vector<std::string>& entities;
   const physics::Scene& scene;
   bool is_hand;                     ///< false: there is no such actor
@@ -171,7 +172,7 @@ struct StepMaker {
 
   /// Reports entities that do not exist or are not physical objects.
   void CheckEntity(const char* key, const Located<std::string>& name) const {
-    const auto index = errors.Find(name, key, entities);
+    const auto index = FindEntity(entry, name, key, errors);
     if (!index || *index >= scene.bodies.size()) return;
     const std::string what = WhyNoThing(scene.bodies[*index]);
     if (!what.empty())
@@ -430,7 +431,7 @@ physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& sce
       const physics::HandIndex index(hand);
       const bool known = index.IsBelow(scene.hands.size());
       const physics::HandModel* model = known ? &scene.hand(index).model : nullptr;
-      const StepMaker maker{entities, scene, hand >= 0, model, named, errors};
+      const StepMaker maker{entry, entities, scene, hand >= 0, model, named, errors};
       physics::Step step = std::visit(maker, named.value);
       step.until = UntilOf(named.value, scene, false, errors);
       step.keep_upright = std::visit(

@@ -71,6 +71,12 @@ std::vector<Outcome> BuildOutcomes(const std::vector<Named<std::vector<Condition
                                    const physics::Scene& scene, const physics::Script& script,
                                    DiagnosticList& errors);
 
+// Finds what a scenario names. Tested by tests/harness/scenario/resolve/build_persons_test.cc
+
+/// The index of the entity. Reports a name that none has, and that of an actor or of a part of one.
+std::optional<std::size_t> FindEntity(const ScenarioYaml& entry, const Located<std::string>& name,
+                                      std::string_view key, DiagnosticList& errors);
+
 // Validates the classes that a scenario declares. Tested by
 // tests/harness/scenario/resolve/classes_test.cc
 

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "harness/scenario/resolve/resolve.h"
 #include "harness/scenario/scenario/scenario.h"
+#include "physics/person/skeleton.h"
 #include "physics/scene/geometry.h"
 #include "physics/scene/planar.h"
 #include "physics/scene/run_limits.h"
@@ -197,10 +199,30 @@ void CheckHand(const Named<HandActorYaml>& actor, const physics::Hand& hand,
 
 }  // namespace
 
+std::optional<std::size_t> FindEntity(const ScenarioYaml& entry, const Located<std::string>& name,
+                                      std::string_view key, DiagnosticList& errors) {
+  const auto is_no_thing = [&](const std::string& what) {
+    errors.Add(name.where, fmt::format("{}: '{}' is {}, not a thing", key, name.value, what),
+               "name one of the 'entities'");
+    return std::nullopt;
+  };
+  if (std::ranges::any_of(entry.hands, [&](const auto& hand) { return hand.name == name.value; }))
+    return is_no_thing("a hand");
+  for (const Named<PersonActorYaml>& person : entry.persons) {
+    if (person.name == name.value) return is_no_thing("a person");
+    const bool has_body = person.value.person == PersonKind::kBody;
+    for (const physics::Body& part : physics::PartsOf({.name = person.name, .has_body = has_body}))
+      if (part.name == name.value) return is_no_thing("a part of '" + person.name + "'");
+  }
+  std::vector<std::string> names;
+  for (const auto& entity : entry.entities) names.push_back(entity.name);
+  return errors.Find(name, key, names);
+}
+
 void ValidateClasses(const ScenarioYaml& entry, DiagnosticList& errors) {
-  std::vector<std::string> used;  // classes that an entity or another class has
-  for (const auto& entity : entry.entities) used.push_back(entity.value.class_name.value);
-  for (const auto& kind : entry.classes) used.push_back(kind.value.value);
+  std::set<std::string> used;  // classes that an entity or another class has
+  for (const auto& entity : entry.entities) used.insert(entity.value.class_name.value);
+  for (const auto& kind : entry.classes) used.insert(kind.value.value);
   for (const auto& kind : entry.classes) {
     for (const auto& [name, where] :
          {std::pair{kind.name, kind.name_where}, std::pair{kind.value.value, kind.value.where}}) {
@@ -208,10 +230,10 @@ void ValidateClasses(const ScenarioYaml& entry, DiagnosticList& errors) {
         errors.Add(where, fmt::format("classes: '{}' is a built-in class", name),
                    "declare your own classes, for example 'Cup: Container'");
     }
-    if (std::ranges::find(used, kind.name) == used.end())
+    if (!used.contains(kind.name))
       errors.AddUnknownName(kind.name_where,
                             fmt::format("classes: no entity has the class '{}'", kind.name),
-                            kind.name, used);
+                            kind.name, {used.begin(), used.end()});
     if (IsItsOwnBase(entry, kind))
       errors.Add(kind.value.where,
                  fmt::format("classes: '{}' is, directly or not, its own base class", kind.name));

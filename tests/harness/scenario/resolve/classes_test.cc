@@ -34,6 +34,9 @@ TEST(Kinds, AMugIsACupIsAContainer) {
 TEST(Kinds, MistakesHaveTheirPlace) {
   EXPECT_EQ(Brief(ErrorsOf(ReadClasses("{Mag: Cup}"))),
             "6:11: classes: no entity has the class 'Mag' | did you mean 'Mug'?\n");
+  EXPECT_EQ(Brief(ErrorsOf(ReadClasses("{Zebra: Mug, Yak: Mug}"))),
+            "6:11: classes: no entity has the class 'Zebra' | known: Mug, Table\n6:23: classes: no "
+            "entity has the class 'Yak' | known: Mug, Table\n");
   EXPECT_EQ(Brief(ErrorsOf(ReadClasses("{Mug: Cup, Cup: Mug}"))),
             "6:16: classes: 'Mug' is, directly or not, its own base class\n6:26: classes: 'Cup' "
             "is, directly or not, its own base class\n");
