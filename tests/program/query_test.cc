@@ -212,6 +212,12 @@ TEST(Query, UnknownNamesAreNamed) {
                                asked.substr(asked.find('=') + 1) + "', or is one; did you mean '" +
                                meant + "'?\n");
   }
+  const Said far = Prehend({"episode", "query", file, "--event", "xyzzy", "--role", "any=ArmPart"});
+  EXPECT_EQ(far.exit_code, 4);
+  EXPECT_EQ(far.err,
+            "prehend: no event is called 'xyzzy'\nprehend: --role: nothing is called 'ArmPart', or "
+            "is one\n");
+  EXPECT_EQ(Prehend({"episode", "query", file, "--event", "grasp*", "--role", "any=cup*"}).err, "");
 }
 
 }  // namespace

@@ -247,24 +247,23 @@ std::string UnknownRole(const EventQuestion& question, const std::set<std::strin
   return "";
 }
 
-/// What may be meant by names that nothing has, of which no answer can be.
+/// Names that nothing has, of which no answer can be, and what may be meant.
 std::string NearestNames(const EventQuestion& question, const episode::KnownNames& known) {
-  const auto near = [](const std::string& name, const std::set<std::string>& names) {
-    return names.contains(name)
-               ? ""
-               : grammar::NearestName(name, std::vector<std::string>(names.begin(), names.end()));
-  };
   std::string text;
-  if (const std::string event = near(question.event, known.events); !event.empty())
-    text += fmt::format("prehend: no event is called '{}'; did you mean '{}'?\n", question.event,
-                        event);
+  const auto tell = [&](const std::string& name, const std::set<std::string>& names,
+                        const std::string& what) {
+    if (name.empty() || names.contains(name) || name.find_first_of("*?") != std::string::npos)
+      return;
+    const std::vector<std::string> all(names.begin(), names.end());
+    const std::string near = grammar::DidYouMean(name, all, "");
+    text += fmt::format("prehend: {}{}{}\n", what, near.empty() ? "" : "; ", near);
+  };
+  tell(question.event, known.events, fmt::format("no event is called '{}'", question.event));
   for (const auto& [option, conditions] :
        {std::pair{"--role", &question.roles}, std::pair{"--part-of", &question.parts_of}}) {
     for (const episode::RoleCondition& condition : *conditions) {
-      const std::string value = near(condition.value, known.values);
-      if (!value.empty())
-        text += fmt::format("prehend: {}: nothing is called '{}', or is one; did you mean '{}'?\n",
-                            option, condition.value, value);
+      tell(condition.value, known.values,
+           fmt::format("{}: nothing is called '{}', or is one", option, condition.value));
     }
   }
   return text;

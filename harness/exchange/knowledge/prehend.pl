@@ -385,8 +385,12 @@ overlapping(>, >, overlapped_by).
 %!  holds(part_of(X, Y)) : directly or not. Of other relations: as they are said. Each answer once.
 holds(Relation) :-
     related(Relation, Key, S, O),
-    property(Key, Property), value_known(Property, S), value_known(Property, O),
-    distinct(S-O, ( subject(S, S0), related(Property, S0, O0), means(O, O0) )).
+    property(Key, Property), subject_known(S), value_known(Property, O),
+    (   nonvar(O), name(rdf, type, Property)
+    ->  class_named(O, Class), distinct(S, ( subject(S, S0), instance(S0, Class) ))
+    ;   distinct(S-O, ( subject(S, S0), related(Property, S0, O0), means(O, O0) ))
+    ).
+subject_known(S) :- ( atom(S), \+ written(S, _) -> label_known(S) ; true ).
 subject(S, S0) :- ( var(S) -> S0 = S ; written(S, Iri) -> S0 = Iri ; said(S0, rdfs:label, literal(S)) ).
 related(Relation, Key, S, O) :-
     (   nonvar(Relation), Relation = Prefix:Inner, atom(Prefix), compound(Inner), Inner =.. [Local, S, O]
@@ -431,7 +435,7 @@ label_of(X, Label) :- atom(X), once(( value(X, rdfs:label, Label), atom(Label) )
 known_words(G) :- control(G, Inner), !, maplist(known_words, Inner).
 known_words(entity(_, D)) :- nonvar(D), !, known_description(D).
 known_words(allen(_, R, _)) :- nonvar(R), !, relation_named(R, _).
-known_words(holds(R)) :- nonvar(R), !, related(R, Key, S, O), property(Key, P), value_known(P, S), value_known(P, O).
+known_words(holds(R)) :- nonvar(R), !, related(R, Key, S, O), property(Key, P), subject_known(S), value_known(P, O).
 known_words(_).
 known_description(D) :-
     pairs_of(D, Kind, Pairs), kind_class(Kind, _),
