@@ -229,6 +229,10 @@ tl::expected<std::string, ExitCode> ChartOf(const Kind& kind, const suite::Playe
   format.picture.ghosts = false;
   format.picture.paths = name == "phases";
   format.picture.labels = false;
+  if (moments.empty() && options.IntOr("--scenes", kind.scenes) > 0)
+    context.err
+        << "prehend: note: there are no scenes, as nothing that a scene could show begins or "
+           "ends here; --at names moments\n";
   if (!moments.empty() && !show::CanDrawPictures())
     context.err << "prehend: warning: this build draws no scenes; the chart is alone\n";
   if (moments.empty() || !show::CanDrawPictures())

@@ -249,10 +249,11 @@ std::vector<KeyMoment> SeriesMoments(const Chart& chart, std::size_t count) {
   const std::tuple<const char*, double, double> wanted[] = {{"tilt", 0.5, kTilts_deg},
                                                             {"tilt", 0.05, kTilts_deg},
                                                             {"tilt", 0.95, kTilts_deg},
-                                                            {"force", 0.98, 1.0},
-                                                            {"height", 0.98, kMoves_m}};
+                                                            {"force", 1, 1.0},
+                                                            {"height", 1, kMoves_m}};
   for (const auto& [name, share, least] : wanted) {
     KeyMoment first{.time_s = chart.to_s + 1};
+    double greatest = -1e9;
     for (const Panel& panel : chart.panels) {
       if (!panel.name.starts_with(name)) continue;
       const std::size_t comma = panel.name.find(", ");
@@ -264,11 +265,14 @@ std::vector<KeyMoment> SeriesMoments(const Chart& chart, std::size_t count) {
         for (const auto& [time_s, value] : in)
           low = std::min(low, value), high = std::max(high, value);
         for (const auto& [time_s, value] : in) {
-          if (high - low < least || value < low + share * (high - low)) continue;
-          if (time_s < first.time_s)
+          if (high - low < least || value < (share < 1 ? low + share * (high - low) : high))
+            continue;
+          if (share < 1 ? time_s < first.time_s : value > greatest) {
+            greatest = value;
             first = {.time_s = time_s,
                      .caption = fmt::format("{} of {}: {:.3g} {}", panel.name.substr(0, comma),
                                             curve.name, value, panel.name.substr(comma + 2))};
+          }
           break;
         }
       }
