@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace prehend::truth {
 namespace {
@@ -15,10 +16,31 @@ namespace {
 constexpr std::array<std::uint32_t, 6> kPalette = {0x0072B2, 0xE69F00, 0x009E73,
                                                    0xCC79A7, 0x56B4E9, 0xD55E00};
 
-EventDrawing DrawingOf(const grammar::EventSignature& event, std::size_t& next_color) {
-  EventDrawing drawing{.as = event.drawing.as, .ghost = event.drawing.ghost};
-  drawing.color =
-      event.drawing.color ? *event.drawing.color : kPalette[next_color++ % kPalette.size()];
+/// Gives each event a colour of its own, as far as there are so many.
+class Colors {
+ public:
+  explicit Colors(const std::vector<grammar::EventSignature>& events) {
+    for (const grammar::EventSignature& event : events)
+      if (event.drawing.color) wanted_.insert(*event.drawing.color);
+  }
+
+  std::uint32_t Of(const grammar::EventSignature& event) {
+    const auto& own = event.drawing.color;
+    if (own && given_.insert(*own).second) return *own;
+    for (std::size_t i = 0; i < kPalette.size(); ++i) {
+      const std::uint32_t color = kPalette[next_++ % kPalette.size()];
+      if (!wanted_.contains(color) && given_.insert(color).second) return color;
+    }
+    return own ? *own : kPalette[next_++ % kPalette.size()];
+  }
+
+ private:
+  std::set<std::uint32_t> wanted_, given_;
+  std::size_t next_ = 0;
+};
+
+EventDrawing DrawingOf(const grammar::EventSignature& event, std::uint32_t color) {
+  EventDrawing drawing{.as = event.drawing.as, .color = color, .ghost = event.drawing.ghost};
   const auto hand = std::ranges::find(event.classes, "Hand");
   drawing.hand = static_cast<std::size_t>(hand - event.classes.begin());
   const bool holds = drawing.as == grammar::DrawnAs::kGrasp;
@@ -149,9 +171,10 @@ Json TimelineJson(const grammar::Timeline& timeline) {
 }
 
 EventDrawings::EventDrawings(const grammar::Program& program) {
-  std::size_t next_color = 0;
-  for (const grammar::EventSignature& event : EventSignatures(program))
-    drawings_[event.name] = DrawingOf(event, next_color);
+  const std::vector<grammar::EventSignature> events = EventSignatures(program);
+  Colors colors(events);
+  for (const grammar::EventSignature& event : events)
+    drawings_[event.name] = DrawingOf(event, colors.Of(event));
   for (auto& [name, drawing] : drawings_) drawing.regions = grammar::RegionsOf(program, name);
 }
 

@@ -55,5 +55,15 @@ TEST(EventDrawings, GiveEventsWithoutAColourOneEach) {
   EXPECT_EQ(drawings.Of("stranger").color, 0x7A828Cu);
 }
 
+TEST(EventDrawings, NoTwoHaveOneColourWhileThereAreOthers) {
+  const EventDrawings drawings = DrawingsOf(
+      "event a(x: Thing) while height(x) > 1 m\n"
+      "event b(x: Thing) while height(x) > 2 m drawn \"#0072B2\"\n"
+      "event c(x: Thing) while height(x) > 3 m drawn \"#0072B2\"\n");
+  EXPECT_EQ(drawings.Of("a").color, 0xE69F00u);
+  EXPECT_EQ(drawings.Of("b").color, 0x0072B2u);
+  EXPECT_EQ(drawings.Of("c").color, 0x009E73u);
+}
+
 }  // namespace
 }  // namespace prehend::truth
