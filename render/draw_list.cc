@@ -298,15 +298,16 @@ void AddMarker(const Picture& picture, std::size_t number, DrawList* list) {
   const MarkerSample& look = kLooks[static_cast<int>(marker.kind)];
   const std::string name = "marker:" + std::to_string(number) + ":" + look.name;
   if (!(marker.half_size_m.minCoeff() > 0)) return;
-  Item item{.primitive = Primitive::kBall,
-            .X_WI = Eigen::Translation3f(marker.p_W_m) * Eigen::Scaling(marker.half_size_m),
-            .rounding_m = 1,
-            .color = marker.color.value_or(look.color),
-            .alpha = look.alpha,
-            .gloss = 0,
-            .object = AddObject(name, list),
-            .shines_through = marker.kind == MarkerKind::kPersonsContact ||
-                              marker.kind == MarkerKind::kCandidate};
+  Item item{
+      .primitive = Primitive::kBall,
+      .X_WI = Eigen::Translation3f(marker.p_W_m) * marker.q_WM * Eigen::Scaling(marker.half_size_m),
+      .rounding_m = 1,
+      .color = marker.color.value_or(look.color),
+      .alpha = look.alpha,
+      .gloss = 0,
+      .object = AddObject(name, list),
+      .shines_through =
+          marker.kind == MarkerKind::kPersonsContact || marker.kind == MarkerKind::kCandidate};
   if (marker.kind == MarkerKind::kCandidate) return AddStar(item, list);
   if (marker.kind == MarkerKind::kCylinder) {
     item.X_WI = Eigen::Translation3f(marker.p_W_m);

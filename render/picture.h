@@ -47,6 +47,8 @@ struct Marker {
   Eigen::Vector3f p_W_m = Eigen::Vector3f::Zero();
   Eigen::Vector3f half_size_m = {0.02f, 0.02f, 0.02f};
   std::optional<Color> color = std::nullopt;  ///< instead of that of its kind
+  /// World frame of its axes x, y, z. Of a support.
+  Eigen::Quaternionf q_WM = Eigen::Quaternionf::Identity();
 };
 
 /// Something solid that only the picture has, upright: a leg of a table.

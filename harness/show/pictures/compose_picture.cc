@@ -196,6 +196,22 @@ bool IsPart(const scenario::Scenario& scenario, const physics::ContactPoint& con
   return is_part(contact.a.body) || is_part(contact.b.body);
 }
 
+/// Out of what supports a body: the mean normal where they touch; up where it is nearly that.
+Eigen::Vector3d WayUp(const physics::Snapshot& snapshot, int body, int support) {
+  constexpr double kLevel = 0.999;
+  const physics::ContactSide on{.body = physics::BodyIndex(body)},
+      below{.body = physics::BodyIndex(support)};
+  Eigen::Vector3d sum_W = Eigen::Vector3d::Zero();
+  for (const auto& contacts : snapshot.AllContacts()) {
+    for (const physics::ContactPoint& contact : contacts) {
+      if (contact.a == on && contact.b == below) sum_W += contact.nhat_BA_W;
+      if (contact.a == below && contact.b == on) sum_W -= contact.nhat_BA_W;
+    }
+  }
+  const bool is_level = sum_W.z() <= 0 || sum_W.z() > kLevel * sum_W.norm();
+  return is_level ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d(sum_W.normalized());
+}
+
 /// Markers of supports (green, under the supported body) and of contact points of hands and persons
 /// (yellow).
 std::vector<render::Marker> ComposeMarkers(const scenario::Scenario& scenario,
@@ -209,10 +225,17 @@ std::vector<render::Marker> ComposeMarkers(const scenario::Scenario& scenario,
     if (body < 0 || !seen.insert({body, 0}).second) continue;
     const physics::LocalBox box = physics::BoundingBox(scenario.scene.bodies[body]);
     const physics::Pose& X_WB = snapshot.bodies[body].X_WB;
-    const Eigen::Vector3d half = (X_WB.q.toRotationMatrix().cwiseAbs() * box.half_size_m);
-    const Eigen::Vector3d foot = X_WB * box.p_BC_m - Eigen::Vector3d(0, 0, half.z());
-    markers.push_back({render::MarkerKind::kSupport, foot.cast<float>(),
-                       Eigen::Vector3d(half.x() * 1.35, half.y() * 1.35, 0.006).cast<float>()});
+    const std::string& support = event.roles[run.drawings.Of(event.event).last].value;
+    const Eigen::Quaterniond q_WM = physics::RotationBetween(
+        Eigen::Vector3d::UnitZ(), WayUp(snapshot, body, BodyNamed(scenario.scene, support)));
+    const Eigen::Vector3d half =
+        (q_WM.inverse() * X_WB.q).toRotationMatrix().cwiseAbs() * box.half_size_m;
+    const Eigen::Vector3d foot = X_WB * box.p_BC_m - q_WM * Eigen::Vector3d(0, 0, half.z());
+    markers.push_back(
+        {.kind = render::MarkerKind::kSupport,
+         .p_W_m = foot.cast<float>(),
+         .half_size_m = Eigen::Vector3d(half.x() * 1.35, half.y() * 1.35, 0.006).cast<float>(),
+         .q_WM = q_WM.cast<float>()});
   }
   for (const physics::ContactPoint& contact : snapshot.contacts) {
     const bool is_hands = contact.a.hand != physics::kNone || contact.b.hand != physics::kNone;
@@ -296,11 +319,25 @@ class StripComposer {
     rows_of_hands_ = strip_.rows.size();
   }
 
-  /// Bars have the names of the entities in the last role.
-  void AddEvents(const std::string& name) {
-    render::StripRow row{Printed(name), {}};
+  /// Bars have the names of the entities in the last role. Of several persons each has a row.
+  void AddEvents(const std::string& name, const std::vector<physics::Person>& persons) {
+    const auto is_by = [](const grammar::NamedEvent& event, const physics::Person& person) {
+      return !event.roles.empty() && event.roles.front().value == person.name;
+    };
+    if (persons.size() > 1)
+      for (const physics::Person& person : persons)
+        AddEvents(name, person.name + " " + Printed(name),
+                  [&](const auto& event) { return is_by(event, person); });
+    AddEvents(name, Printed(name), [&](const auto& event) {
+      return persons.size() <= 1 || std::ranges::none_of(persons, [&](const auto& person) {
+               return is_by(event, person);
+             });
+    });
+  }
+  void AddEvents(const std::string& name, std::string label, const auto& is_in) {
+    render::StripRow row{std::move(label), {}};
     for (const grammar::NamedEvent& event : run_.timeline.events) {
-      if (event.event != name) continue;
+      if (event.event != name || !is_in(event)) continue;
       AddBar(event, event.roles.empty() ? Printed(name) : event.roles.back().value, row);
     }
     Append(std::move(row));
@@ -367,7 +404,7 @@ render::TimelineStrip ComposeStrip(const physics::Scene& scene, const episode::R
     composer.AddPhases(scene.hands.size() == 1 ? "phase" : hand.name, hand.name);
     composer.AddGrasps(hand.name);
   }
-  for (const std::string& name : OtherEvents(run)) composer.AddEvents(name);
+  for (const std::string& name : OtherEvents(run)) composer.AddEvents(name, scene.persons);
   for (const physics::Body& body : scene.bodies)
     if (!body.fixed && !body.kinematic) composer.AddSupports(body.name);
   return composer.Strip();

@@ -134,6 +134,36 @@ TEST(ComposePictureTest, SupportsOfTheMomentAreMarked) {
   EXPECT_TRUE(Stage().At("0.9").markers.empty());
 }
 
+TEST(ComposePictureTest, TheMarkOfASupportLiesOnTheSlope) {
+  Stage stage;
+  const Eigen::Quaterniond q(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitY()));
+  const Eigen::Vector3d up = q * Eigen::Vector3d::UnitZ();
+  for (physics::Snapshot& snapshot : stage.run.recording) {
+    snapshot.bodies[1].X_WB.q = q;
+    snapshot.contacts = {{.a = {.body = physics::BodyIndex(1)},
+                          .b = {.body = physics::BodyIndex(0)},
+                          .nhat_BA_W = up}};
+  }
+  const render::Marker mark = stage.At("0.1").markers.at(0);
+  const physics::LocalBox box = physics::BoundingBox(stage.scenario.scene.bodies[1]);
+  const Eigen::Vector3d foot = q * (box.p_BC_m - box.half_size_m.z() * Eigen::Vector3d::UnitZ());
+  EXPECT_LT((mark.p_W_m.cast<double>() - foot).norm(), 1e-6);
+  EXPECT_LT((mark.q_WM.cast<double>() * Eigen::Vector3d::UnitZ() - up).norm(), 1e-6);
+}
+
+TEST(ComposePictureTest, OfSeveralPersonsEachHasARow) {
+  Stage stage;
+  for (const char* name : {"anna", "ben"}) {
+    stage.scenario.scene.persons.push_back({.name = name});
+    for (physics::Snapshot& snapshot : stage.run.recording) snapshot.gazes.emplace_back();
+    stage.Add("looks", {{"p", name}, {"x", "cup"}}, 0, 480);
+  }
+  std::vector<std::string> labels;
+  for (const render::StripRow& row : stage.At("0.5").strip.rows) labels.push_back(row.label);
+  EXPECT_EQ(labels, (std::vector<std::string>{"phase", "grasp", "falls", "anna looks", "ben looks",
+                                              "cup on"}));
+}
+
 TEST(ComposePictureTest, TheTitleSaysWhichMomentItIs) {
   EXPECT_EQ(Stage().At("0.5").title, "stage  ·  0.500 s  ·  pick_and_place");
   EXPECT_EQ(Stage().At("moves_to.begin").title,
