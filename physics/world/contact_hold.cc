@@ -114,7 +114,8 @@ void TouchingPairs::Pair::MoveTo(const Pose& X_WA_now, const Pose& X_WB_now) {
 void TouchingPairs::Describe(Snapshot& snapshot) {
   snapshot.contacts.clear();
   for (auto& [key, pair] : pairs_) {
-    pair.MoveTo(PoseOf(key.first, snapshot), PoseOf(key.second, snapshot));
+    if (key.first.hand != kNone || key.second.hand != kNone)
+      pair.MoveTo(PoseOf(key.first, snapshot), PoseOf(key.second, snapshot));
     snapshot.contacts.insert(snapshot.contacts.end(), pair.points.begin(), pair.points.end());
   }
   snapshot.resting = shared_;

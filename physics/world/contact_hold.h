@@ -38,7 +38,8 @@ class TouchingPairs {
   /// are from each other; it is asked where no point tells.
   void EndTick(const std::function<double(const ContactSide&, const ContactSide&)>& apart_m = {});
   /// Writes contacts, sorted by (a, b, point), and the resting ones. What `snapshot` says of bodies
-  /// and hands is of this tick: points without an impulse go with the side that moves farther.
+  /// and hands is of this tick: points of a hand without an impulse go with the side that moves
+  /// farther.
   void Describe(Snapshot& snapshot);
 
  private:

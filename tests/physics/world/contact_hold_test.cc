@@ -63,28 +63,27 @@ TEST_F(ContactHold, WhereNoPointTellsItIsMeasured) {
   EXPECT_EQ(count, 4);
 }
 
-TEST_F(ContactHold, InAGapPointsGoAlongWithWhatMoves) {
+TEST_F(ContactHold, InAGapPointsOfAHandGoAlongWithWhatMoves) {
   Snapshot now;
-  now.bodies.resize(2);
+  now.bodies.resize(1);
+  now.hands.resize(1);
+  Pose& palm = now.hands[0].palm.X_WB;
   for (int i = 0; i < 30; ++i) {
-    now.bodies[1].X_WB = {{0.1 * i, 0, 0},
-                          Eigen::Quaterniond(Eigen::AngleAxisd(0.1 * i, Eigen::Vector3d::UnitZ()))};
+    palm = {{0.1 * i, 0, 0},
+            Eigen::Quaterniond(Eigen::AngleAxisd(0.1 * i, Eigen::Vector3d::UnitZ()))};
     pairs_.BeginTick({1, 0});
     pairs_.Add({.a = {.body = BodyIndex(0)},
-                .b = {.body = BodyIndex(1)},
-                .p_W_m = now.bodies[1].X_WB * Eigen::Vector3d(0.2, 0, 0),
-                .nhat_BA_W = now.bodies[1].X_WB.q * Eigen::Vector3d::UnitX(),
+                .b = {.hand = HandIndex(0)},
+                .p_W_m = palm * Eigen::Vector3d(0.2, 0, 0),
+                .nhat_BA_W = palm.q * Eigen::Vector3d::UnitX(),
                 .distance_m = kNear_m,
                 .normal_impulse_n_s = i < 20 ? 0.01 : 0});
     pairs_.EndTick();
     pairs_.Describe(now);
     ASSERT_EQ(now.contacts.size(), 1u);
-    EXPECT_LT(
-        (now.bodies[1].X_WB.inverse() * now.contacts[0].p_W_m - Eigen::Vector3d(0.2, 0, 0)).norm(),
-        1e-12)
+    EXPECT_LT((palm.inverse() * now.contacts[0].p_W_m - Eigen::Vector3d(0.2, 0, 0)).norm(), 1e-12)
         << i;
-    EXPECT_LT((now.bodies[1].X_WB.q * Eigen::Vector3d::UnitX() - now.contacts[0].nhat_BA_W).norm(),
-              1e-12);
+    EXPECT_LT((palm.q * Eigen::Vector3d::UnitX() - now.contacts[0].nhat_BA_W).norm(), 1e-12);
   }
 }
 
