@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers and queries on the edge: words that JSON has for itself, moments that are no numbers, an
-// empty query.
+// Answers and queries on the edge: words that JSON has for itself, labels, moments that are no
+// numbers, an empty query.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -52,6 +52,15 @@ TEST(Ask, WordsOfJsonAreTexts) {
   EXPECT_NE(unknown.err.find("nothing is called 'nul' in these episodes; did you mean 'null'?"),
             std::string::npos)
       << unknown.err;
+}
+
+// And a class that is said of nothing has some below it.
+TEST(Ask, LabelsStandWhereIndividualsDo) {
+  for (const char* query : {"holds(type(table, T))", "holds(type(X, dul:'Object'))",
+                            "holds(type(table, dul:'Object'))"})
+    EXPECT_EQ(Prehend({"episode", "ask", CalledNull().kb, query}).exit_code, 0) << query;
+  for (const char* query : {"holds(type(table, 'Grasping'))", "holds(graspType(table, S))"})
+    EXPECT_EQ(Prehend({"episode", "ask", CalledNull().kb, query}).exit_code, 4) << query;
 }
 
 TEST(Ask, WhatCannotBeAskedIsRefused) {

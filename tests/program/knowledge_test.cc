@@ -298,12 +298,6 @@ TEST(Knowledge, UnknownWordsAreNamedWithTheNearest) {
     EXPECT_EQ(said.exit_code, 2) << query << said.out;
     EXPECT_NE(said.err.find(why), std::string::npos) << query << ": " << said.err;
   }
-  // Labels stand where individuals do; and a class that is said of nothing has some below it.
-  for (const char* query : {"holds(type(handle, T))", "holds(type(handle, 'Handle'))",
-                            "holds(type(X, dul:'Object'))", "holds(type(handle, dul:'Object'))"})
-    EXPECT_EQ(Prehend({"episode", "ask", kb, query}).exit_code, 0) << query;
-  for (const char* query : {"holds(type(handle, 'Grasping'))", "holds(graspType(handle, S))"})
-    EXPECT_EQ(Prehend({"episode", "ask", kb, query}).exit_code, 4) << query;
   // What nothing is called may be asked for; but it is said.
   for (const char* query :
        {"entity(O, [an, object, [name, handel]])", "entity(A, [an, action, [object, handel]])",
