@@ -92,14 +92,14 @@ class BackwardWalk {
     } else if (approach.idle_s >= 0 && TicksFrom(frame, so_far_.last_progress) > limits_.idle) {
       return WalkBack{MovementFrom(so_far_.begin, frame), Stop::kIdle, so_far_.last_progress};
     }
-    const auto moves_into = [&](FrameNumber movement) {
-      const bool is_slow_start = movement == frame + 1 && *speed > approach.onset;
-      return moves || (is_slow_start && approach.hand == kNone);
-    };
-    if (*level > so_far_.farthest) so_far_.top = frame;
-    if (*level > so_far_.farthest && moves_into(so_far_.turn)) so_far_.turn = frame;
-    if (approach.idle_s < 0 || moves_into(so_far_.begin)) so_far_.begin = frame;
-    so_far_.farthest = std::max(so_far_.farthest, *level);
+    const bool is_slow_start =
+        so_far_.begin == frame + 1 && *speed > approach.onset && approach.hand == kNone;
+    if (approach.idle_s < 0 || moves || is_slow_start) so_far_.begin = frame;
+    if (*level > so_far_.farthest) {
+      so_far_.top = frame;
+      so_far_.turn = so_far_.begin;
+      so_far_.farthest = *level;
+    }
     so_far_.after = *here;
     if (approach.over_s > 0) memory_.levels.push_back(*level);
     return std::nullopt;
@@ -120,7 +120,7 @@ class BackwardWalk {
 
   bool FallsInto(FrameNumber frame) const {
     const double way = Signal(frame - 1).value_or(0) - Signal(frame).value_or(0);
-    return Speed(frame - 1, way).value_or(0) > rule_.approach->onset;
+    return way > 0 && Speed(frame - 1, way).value_or(0) > rule_.approach->onset;
   }
 
   // A movement was noticed at `frame`, and none between `earliest` and there. It begins where the

@@ -473,15 +473,18 @@ double Evaluator::Apart_m(int hand, FrameNumber frame, FrameNumber other) const 
   return farthest_m;
 }
 
-// The most distant frames first: a hand that moves is farthest away there.
+// The most distant frames first: a hand that moves is farthest away there. A frame alone shows
+// nothing.
 bool Evaluator::StaysWithin(double still_m, Tick ticks, int hand, FrameNumber frame,
                             FrameNumber last) const {
   const Tick now = history_.At(frame).tick;
-  for (FrameNumber early = history_.FirstNotBefore(now - ticks); early < frame; ++early)
+  const FrameNumber first = history_.FirstNotBefore(now - ticks);
+  last = std::min(history_.LastNotAfter(now + ticks), last);
+  for (FrameNumber early = first; early < frame; ++early)
     if (!(Apart_m(hand, frame, early) <= still_m)) return false;
-  for (FrameNumber late = std::min(history_.LastNotAfter(now + ticks), last); late > frame; --late)
+  for (FrameNumber late = last; late > frame; --late)
     if (!(Apart_m(hand, frame, late) <= still_m)) return false;
-  return true;
+  return first < last;
 }
 
 // Null where the two do not touch.

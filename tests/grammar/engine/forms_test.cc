@@ -223,6 +223,65 @@ TEST(Forms, WhatIsDecidedLateIsAskedForWhereItEnded) {
   EXPECT_EQ(events[0].interval, (Interval{0, 20}));
 }
 
+/// Where an approach begins of whom the heights and speeds are given, until the hand touches it in
+/// the last frame. The hand itself moves along.
+Tick ApproachBegin(const std::string& form, Tick step, const std::vector<double>& heights_m,
+                   const std::vector<double>& speeds_m_per_s) {
+  Scene scene;
+  Monitor monitor(
+      testing::CompileText("grammar t\nevent e(h: Hand, c: Cup) until touching(h, c) begins since "
+                           "not touching(h, c)\napproaching height(c) receding at most 25.5 mm" +
+                           form + " at most 100 s back"),
+      scene.entity_table);
+  std::vector<Event> events;
+  for (std::size_t i = 0; i < heights_m.size(); ++i) {
+    scene.looks[Scene::kCup].p_WB_m.z() = scene.looks[Scene::kHand].p_WB_m.z() = heights_m[i];
+    scene.looks[Scene::kCup].v_WB_m_per_s.x() = speeds_m_per_s[i % speeds_m_per_s.size()];
+    scene.collision_sphere.p_W_m.z() = heights_m[i];
+    if (i + 1 == heights_m.size()) scene.touches = {{.a = Scene::kHand, .b = Scene::kCup}};
+    monitor.Advance(scene.At(step * static_cast<Tick>(i)), events);
+  }
+  monitor.Finish(step * static_cast<Tick>(heights_m.size()), events);
+  EXPECT_EQ(monitor.error(), "");
+  return events.size() == 1 ? events[0].interval.begin : -1;
+}
+
+// Nobody is ever slow: it is no matter whether it is asked.
+TEST(Forms, ASpeedThatIsNeverSlowMovesNoTurningPoint) {
+  std::vector<double> heights_m;
+  for (int i = 0; i <= 72; ++i)
+    heights_m.push_back(i < 40 ? 0.1 + 0.005 * i : std::min(0.3, 0.3 - 0.01 * (i - 42)));
+  for (const char* form :
+       {"", " over 50 ms", ", with speed(c) slower than 1 cm/s at most 100 ms",
+        " over 50 ms, with speed(c) slower than 1 cm/s at most 100 ms",
+        " over 50 ms, with speed(c) slower than 1 cm/s at most 100 ms, onset 1 mm/s"})
+    EXPECT_EQ(ApproachBegin(form, 10, heights_m, {1}), 420) << form;
+}
+
+// It stands at the turning point, then trembles on the way: the stand is no approach, whatever
+// pauses may last, and the trembling one.
+TEST(Forms, AfterAStandAtTheTurningPointItBeginsWithTheMovement) {
+  const std::vector<double> heights_m = {0, 0.1, 0.1, 0.1, 0.099, 0.098, 0.099, 0.098};
+  for (const char* most : {"150 ms", "1 s"})
+    EXPECT_EQ(ApproachBegin(std::string(", with speed(c) slower than 1 cm/s at most ") + most, 100,
+                            heights_m, {0, 0, 0, 0, 0, 0.05, 0.05, 0.05}),
+              400)
+        << most;
+}
+
+// Frames farther apart than the window: none shows that the hand stays.
+TEST(Forms, AFrameAloneInItsWindowIsNoPause) {
+  for (const Tick step : {100, 240, 251, 300}) {
+    std::vector<double> heights_m;
+    for (int i = 12; i >= 0; --i) heights_m.push_back(0.0004 * static_cast<double>(step * i));
+    EXPECT_EQ(ApproachBegin(", with surface_speed(h) slower than 1 cm/s or within 2.5 mm over 500 "
+                            "ms at most 500 ms",
+                            step, heights_m, {0}),
+              0)
+        << step;
+  }
+}
+
 // At the first begin nobody needs to ask for the tray, so nothing of it would wake the rule later.
 TEST(Forms, WhatWasNotAskedForBeforeBeginsTheNextOne) {
   Scene scene;

@@ -175,7 +175,7 @@ int ApproachBegin(const Approach& a, const Ticks& ticks, int earliest, int end) 
   };
   const auto stays = [&](int i) {
     const std::vector<int> around = Around(i, a.still_over, ticks, end);
-    return by_hand && std::all_of(around.begin(), around.end(), [&](int k) {
+    return by_hand && around.size() > 1 && std::all_of(around.begin(), around.end(), [&](int k) {
              return std::abs(a.signal[k] - a.signal[i]) <= a.still;
            });
   };
@@ -200,17 +200,16 @@ int ApproachBegin(const Approach& a, const Ticks& ticks, int earliest, int end) 
   if (receded && a.over > 0) {
     int begin = end;
     while (begin > turn && levels[begin] < levels[turn] - a.slack) --begin;
-    while (begin > limit && speed(begin - 1) > a.onset) --begin;
+    while (begin > limit && a.signal[begin - 1] > a.signal[begin] && speed(begin - 1) > a.onset)
+      --begin;
     return begin;
   }
-  if (a.idle < 0 && !receded) return limit;
-  // Movement, or the slow start of one; after receding only where the signal is larger than ever
-  // after.
+  const int farthest = receded ? turn : limit;
+  if (a.idle < 0) return farthest;
+  // Movement, or the slow start of one.
   int begin = end;
-  for (int i = end - 1; i >= limit; --i) {
-    const bool moves = fast(i) || (!by_hand && begin == i + 1 && speed(i) > a.onset);
-    if (moves && (!receded || levels[i] > largest_after(i))) begin = i;
-  }
+  for (int i = end - 1; i >= farthest; --i)
+    if (fast(i) || (!by_hand && begin == i + 1 && speed(i) > a.onset)) begin = i;
   // A hand that can pause while it trembles: where it leaves its place, and while it speeds up.
   const int pause = paused ? limit - 1 : receded ? turn : limit;
   if (!by_hand || begin == pause) return begin;
