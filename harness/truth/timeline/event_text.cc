@@ -12,9 +12,11 @@
 namespace prehend::truth {
 namespace {
 
-// Told apart by people who are colour-blind: M. Okabe and K. Ito, "Color universal design", 2008.
-constexpr std::array<std::uint32_t, 6> kPalette = {0x0072B2, 0xE69F00, 0x009E73,
-                                                   0xCC79A7, 0x56B4E9, 0xD55E00};
+// Told apart by people who are colour-blind: M. Okabe and K. Ito, "Color universal design", 2008;
+// after these six, what is far from them of P. Tol, "Colour schemes", 2021.
+constexpr std::array<std::uint32_t, 13> kPalette = {
+    0x0072B2, 0xE69F00, 0x009E73, 0xCC79A7, 0x56B4E9, 0xD55E00, 0x332288,
+    0x117733, 0x999933, 0xCC6677, 0x882255, 0xAA4499, 0xDDCC77};
 
 /// Gives each event a colour of its own, as far as there are so many.
 class Colors {

@@ -105,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(Files, PersonsRefused, testing::Values(
     Bad{"hand_step", "{person: head, at_m: [-0.9, 0, 0]}", "anna: {close_to: 1}", "12:5: 'anna' is a person; this step is for hands | persons look, walk, turn, lean, move a limb; their hands are actors of their own\n"},
     Bad{"person_step", "{person: head, at_m: [-0.9, 0, 0]}", "right_hand: {lean_deg: 10}", "12:5: 'right_hand' is a hand; this step is for persons | hands reach, close, move; persons look, walk, lean\n"},
     Bad{"reach_for_her", "{person: head, at_m: [-0.9, 0, 0]}", "right_hand: {reach: anna, style: wrap}", "12:25: reach: 'anna' is a person, not a thing | name one of the 'entities'\n"},
-    Bad{"place_on_her", "{person: body, at_m: [-0.9, 0, 0]}", "right_hand: {place_on: anna_chest}", "12:28: place_on: 'anna_chest' is a part of 'anna', not a thing | name one of the 'entities'\n"},
+    Bad{"place_on_her", "{person: body, at_m: [-0.9, 0, 0]}", "right_hand: {place_on: anna_chest}", "12:17: place_on: right_hand cannot hold anything here | no step before this one reaches for something or closes the hand\n12:28: place_on: 'anna_chest' is a part of 'anna', not a thing | name one of the 'entities'\n"},
     Bad{"press_a_hand", "{person: head, at_m: [-0.9, 0, 0]}", "right_hand: {press_n: 5, against: right_hand}", "12:39: press_n: 'right_hand' is a hand, not a thing | name one of the 'entities'\n"},
     Bad{"nobody", "{person: head, at_m: [-0.9, 0, 0]}", "bert: {look_at: mlik}", "12:5: no actor is called 'bert' | known: right_hand, anna\n"},
     Bad{"look_at_herself", "{person: body, at_m: [-0.9, 0, 0]}", "anna: {look_at: anna_left_foot}",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/show/figures/figures.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -72,9 +73,16 @@ TEST(Figures, ScenesOfASeriesShowTheTwist) {
   EXPECT_GT(twist->time_s, 1.7) << "it is level until then";
   EXPECT_LT(twist->time_s, 2.2) << "it lies on the table then";
   const auto& [level, its_run] = Of("bimanual/two_hands_carry_a_plate_of_a_kilogram");
-  for (const KeyMoment& moment :
-       SeriesMoments(SeriesChart(level.scenario, its_run, WholeOf(its_run)), 3))
+  const Chart chart = SeriesChart(level.scenario, its_run, WholeOf(its_run));
+  const auto scenes = SeriesMoments(chart, 3);
+  for (const KeyMoment& moment : scenes)
     EXPECT_EQ(moment.caption.find("tilt"), std::string::npos) << "two hands keep it level";
+  double most_m = 0;
+  for (const Curve& curve : chart.panels[0].curves)
+    for (const auto& [time_s, height_m] : curve.points) most_m = std::max(most_m, height_m);
+  EXPECT_TRUE(std::ranges::any_of(scenes, [&](const KeyMoment& moment) {
+    return moment.caption.ends_with(fmt::format(": {:.3g} m", most_m));
+  })) << most_m;
 }
 
 TEST(Figures, GazeIsWhatPersonsSee) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "grammar/compile/compile.h"
 #include "harness/truth/timeline/event_text.h"
 
@@ -63,6 +65,14 @@ TEST(EventDrawings, NoTwoHaveOneColourWhileThereAreOthers) {
   EXPECT_EQ(drawings.Of("a").color, 0xE69F00u);
   EXPECT_EQ(drawings.Of("b").color, 0x0072B2u);
   EXPECT_EQ(drawings.Of("c").color, 0x009E73u);
+  std::string many;
+  for (const char name : std::string("abcdefghijklm"))
+    many += std::string("event ") + name + "(x: Thing) while height(x) > 1 m\n";
+  const EventDrawings all = DrawingsOf(many);
+  std::set<std::uint32_t> colors;
+  for (const char name : std::string("abcdefghijklm"))
+    colors.insert(all.Of(std::string(1, name)).color);
+  EXPECT_EQ(colors.size(), 13u);
 }
 
 }  // namespace
