@@ -109,7 +109,7 @@ class Box2dWorld final : public World {
   std::vector<Box2dJoint> joints_;
   std::vector<Box2dHand> hands_;
   Stillness stillness_;
-  mutable TouchingPairs touching_;  ///< its points move as they are described
+  mutable TouchingPairs touching_;  ///< its points go along as they are described
 };
 
 Box2dWorld::Box2dWorld(const Scene& scene, const std::vector<int>& styles)

@@ -243,7 +243,7 @@ class BulletWorld final : public World {
   FirstRest first_rest_;
   ContactSides sides_;
   Stillness stillness_;
-  mutable TouchingPairs touching_;  ///< its points move as they are described
+  mutable TouchingPairs touching_;  ///< its points go along as they are described
 };
 
 BulletWorld::BulletWorld(const Scene& scene, const std::vector<int>& styles)

@@ -12,10 +12,9 @@ namespace {
 /// What pressed for longer than a blow also lasts until its surfaces are so far apart.
 constexpr double kApart_m = 0.0005;
 
-const Pose& PoseOf(const ContactSide& side, const Snapshot& now) {
-  if (side.hand == kNone) return now.body(side.body).X_WB;
-  const HandState& hand = now.hand(side.hand);
-  return side.link == kNone ? hand.palm.X_WB : At(hand.X_WL, side.link);
+const Pose& PoseOf(const ContactSide& of_hand, const Snapshot& now) {
+  const HandState& hand = now.hand(of_hand.hand);
+  return of_hand.link == kNone ? hand.palm.X_WB : At(hand.X_WL, of_hand.link);
 }
 
 }  // namespace
@@ -96,26 +95,23 @@ void TouchingPairs::ShareResting() {
   shared_ = points->empty() ? nullptr : std::move(points);
 }
 
-void TouchingPairs::Pair::MoveTo(const Pose& X_WA_now, const Pose& X_WB_now) {
+void TouchingPairs::Pair::GoAlong(const Pose& X_WH_now) {
   if (!seen) {
-    const Pose by_a = X_WA_now * X_WA.inverse(), by_b = X_WB_now * X_WB.inverse();
+    const Pose by = X_WH_now * X_WH.inverse();
     for (ContactPoint& point : points) {
-      const Eigen::Vector3d &p_W_m = point.p_W_m, with_a_W_m = by_a * p_W_m,
-                            with_b_W_m = by_b * p_W_m;
-      const bool goes_with_a = (with_a_W_m - p_W_m).norm() > (with_b_W_m - p_W_m).norm();
-      point.nhat_BA_W = (goes_with_a ? by_a : by_b).q * point.nhat_BA_W;
-      point.p_W_m = goes_with_a ? with_a_W_m : with_b_W_m;
+      point.p_W_m = by * point.p_W_m;
+      point.nhat_BA_W = by.q * point.nhat_BA_W;
     }
     std::sort(points.begin(), points.end(), ComesBefore);
   }
-  X_WA = X_WA_now, X_WB = X_WB_now;
+  X_WH = X_WH_now;
 }
 
 void TouchingPairs::Describe(Snapshot& snapshot) {
   snapshot.contacts.clear();
   for (auto& [key, pair] : pairs_) {
-    if (key.first.hand != kNone || key.second.hand != kNone)
-      pair.MoveTo(PoseOf(key.first, snapshot), PoseOf(key.second, snapshot));
+    const ContactSide& hand = key.first.hand != kNone ? key.first : key.second;
+    if (hand.hand != kNone) pair.GoAlong(PoseOf(hand, snapshot));
     snapshot.contacts.insert(snapshot.contacts.end(), pair.points.begin(), pair.points.end());
   }
   snapshot.resting = shared_;

@@ -37,20 +37,19 @@ class TouchingPairs {
   /// Call after the last point of the tick. `apart_m` measures how far the surfaces of two sides
   /// are from each other; it is asked where no point tells.
   void EndTick(const std::function<double(const ContactSide&, const ContactSide&)>& apart_m = {});
-  /// Writes contacts, sorted by (a, b, point), and the resting ones. What `snapshot` says of bodies
-  /// and hands is of this tick: points of a hand without an impulse go with the side that moves
-  /// farther.
+  /// Writes contacts, sorted by (a, b, point), and the resting ones. What `snapshot` says of hands
+  /// is of this tick: their points without an impulse go along with them.
   void Describe(Snapshot& snapshot);
 
  private:
   struct Pair {
     std::vector<ContactPoint> points;  ///< of the last tick with an impulse
-    Pose X_WA, X_WB;                   ///< of both sides in the tick of the points
+    Pose X_WH;                         ///< of the hand's link in the tick of the points
     int pressed_ticks = 0, quiet_ticks = 0;
     bool seen = false;  ///< in the present tick
     bool near = false;  ///< in the present tick, without an impulse
 
-    void MoveTo(const Pose& X_WA_now, const Pose& X_WB_now);
+    void GoAlong(const Pose& X_WH_now);
   };
   using Pairs = std::map<std::pair<ContactSide, ContactSide>, Pair>;
 

@@ -20,7 +20,6 @@ class ContactHold : public testing::Test {
                 .normal_impulse_n_s = impulse_n_s});
     pairs_.EndTick();
     Snapshot snapshot;
-    snapshot.bodies.resize(2);
     pairs_.Describe(snapshot);
     return !snapshot.contacts.empty();
   }
@@ -52,7 +51,6 @@ TEST_F(ContactHold, WhereNoPointTellsItIsMeasured) {
     pairs_.BeginTick({1, 0});
     pairs_.EndTick([&](const ContactSide&, const ContactSide&) { return apart_m; });
     Snapshot snapshot;
-    snapshot.bodies.resize(2);
     pairs_.Describe(snapshot);
     return !snapshot.contacts.empty();
   };
@@ -63,27 +61,27 @@ TEST_F(ContactHold, WhereNoPointTellsItIsMeasured) {
   EXPECT_EQ(count, 4);
 }
 
-TEST_F(ContactHold, InAGapPointsOfAHandGoAlongWithWhatMoves) {
+TEST_F(ContactHold, InAGapPointsOfAHandGoAlongWithIt) {
   Snapshot now;
-  now.bodies.resize(1);
   now.hands.resize(1);
-  Pose& palm = now.hands[0].palm.X_WB;
+  const Eigen::Vector3d p_H_m(0.2, 0, 0), nhat_H = Eigen::Vector3d::UnitX();
   for (int i = 0; i < 30; ++i) {
-    palm = {{0.1 * i, 0, 0},
-            Eigen::Quaterniond(Eigen::AngleAxisd(0.1 * i, Eigen::Vector3d::UnitZ()))};
+    const Pose X_WH{{0.1 * i, 0, 0},
+                    Eigen::Quaterniond(Eigen::AngleAxisd(0.1 * i, Eigen::Vector3d::UnitZ()))};
+    now.hands[0].palm.X_WB = X_WH;
     pairs_.BeginTick({1, 0});
-    pairs_.Add({.a = {.body = BodyIndex(0)},
+    pairs_.Add({.a = {.body = BodyIndex(1)},
                 .b = {.hand = HandIndex(0)},
-                .p_W_m = palm * Eigen::Vector3d(0.2, 0, 0),
-                .nhat_BA_W = palm.q * Eigen::Vector3d::UnitX(),
+                .p_W_m = X_WH * p_H_m,
+                .nhat_BA_W = X_WH.q * nhat_H,
                 .distance_m = kNear_m,
                 .normal_impulse_n_s = i < 20 ? 0.01 : 0});
     pairs_.EndTick();
     pairs_.Describe(now);
     ASSERT_EQ(now.contacts.size(), 1u);
-    EXPECT_LT((palm.inverse() * now.contacts[0].p_W_m - Eigen::Vector3d(0.2, 0, 0)).norm(), 1e-12)
-        << i;
-    EXPECT_LT((palm.q * Eigen::Vector3d::UnitX() - now.contacts[0].nhat_BA_W).norm(), 1e-12);
+    const ContactPoint& point = now.contacts[0];
+    EXPECT_LT((X_WH.inverse() * point.p_W_m - p_H_m).norm(), 1e-12) << i;
+    EXPECT_LT((point.nhat_BA_W.cwiseAbs() - (X_WH.q * nhat_H).cwiseAbs()).norm(), 1e-12) << i;
   }
 }
 
