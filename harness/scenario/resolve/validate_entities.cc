@@ -201,6 +201,9 @@ void CheckHand(const Named<HandActorYaml>& actor, const physics::Hand& hand,
 
 std::optional<std::size_t> FindEntity(const ScenarioYaml& entry, const Located<std::string>& name,
                                       std::string_view key, DiagnosticList& errors) {
+  std::vector<std::string> names;
+  for (const auto& entity : entry.entities) names.push_back(entity.name);
+  if (std::ranges::count(names, name.value) > 0) return errors.Find(name, key, names);
   const auto is_no_thing = [&](const std::string& what) {
     errors.Add(name.where, fmt::format("{}: '{}' is {}, not a thing", key, name.value, what),
                "name one of the 'entities'");
@@ -214,8 +217,6 @@ std::optional<std::size_t> FindEntity(const ScenarioYaml& entry, const Located<s
     for (const physics::Body& part : physics::PartsOf({.name = person.name, .has_body = has_body}))
       if (part.name == name.value) return is_no_thing("a part of '" + person.name + "'");
   }
-  std::vector<std::string> names;
-  for (const auto& entity : entry.entities) names.push_back(entity.name);
   return errors.Find(name, key, names);
 }
 
