@@ -47,9 +47,11 @@ Tick TickOf(const Ask& ask, const ReplayMonitor& past) {
   return truth::TickAt(*ask.time_s, past.entity_table().ticks_per_second);
 }
 
-// A time that was read off a table is rounded, so the end counts, too.
-bool Contains(const CandidateOutcome& outcome, Tick tick) {
-  return outcome.span.begin.tick <= tick + 1 && tick <= outcome.span.end.tick;
+// A time that was read off a table has four decimals.
+bool Contains(const CandidateOutcome& outcome, double time_s, Tick ticks_per_second) {
+  constexpr double kRounded_s = 1e-4;
+  return truth::SecondsOf(outcome.span.begin.tick, ticks_per_second) <= time_s + kRounded_s &&
+         time_s - kRounded_s <= truth::SecondsOf(outcome.span.end.tick, ticks_per_second);
 }
 
 using Json = nlohmann::ordered_json;
@@ -223,7 +225,7 @@ std::vector<WhyEvent> ExplainEvents(ReplayMonitor& past, const Ask& ask) {
   std::vector<WhyEvent> events;
   EventReasons reasons(past);
   for (const CandidateOutcome* outcome : IntervalsOf(past, ask)) {
-    if (!ask.time_s || Contains(*outcome, TickOf(ask, past)))
+    if (!ask.time_s || Contains(*outcome, *ask.time_s, past.entity_table().ticks_per_second))
       events.push_back(reasons.Explain(outcome->instance, *outcome));
   }
   return events;
