@@ -82,6 +82,19 @@ TEST_F(NotTracked, AHandWhoseGripIsKnownStaysWhereItWas) {
   EXPECT_EQ(with.out.find("moving"), std::string::npos) << with.out;
 }
 
+// What touches and is lost for a moment touches as it did, also where its speed is computed.
+TEST_F(NotTracked, ASpeedOfATouchIsBridged) {
+  WriteFile(folder_ / "g.grammar",
+            "grammar g\nevent slow(hand: Hand, cup: Cup)\n  while touching(hand, cup) and "
+            "touch_speed(hand, cup) < 5 cm/s\n");
+  std::string touching = Recording(40, 44);
+  for (std::size_t at = 0; (at = touching.find("0.81]}}}", at)) != std::string::npos; ++at)
+    touching.replace(at, 8, "0.81]}}, \"touches\": [{\"a\": \"hand\", \"b\": \"cup\"}]}");
+  const Said said = Segment(touching);
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_NE(said.out.find("slow   0.0000   2.0000"), std::string::npos) << said.out;
+}
+
 // Of a hand that is lost for 2 s, from 1.0 s on, nobody knows whether it idles; for 0.5 s it does
 // what it did. Looks are bridged for 0.1 s.
 TEST_F(NotTracked, AHandThatIsLostForLongDoesNotIdle) {

@@ -351,12 +351,11 @@ class EpisodeReader {
     for (const Named<HandEntry>& hand : entry.hands) TakeHand(hand, errors);
     FollowTheirSamples();
     now_.touches.clear();
-    for (const TouchEntry& touch : entry.touches) TakeTouch(touch, errors);
-    std::sort(now_.touches.begin(), now_.touches.end(), [](const auto& a, const auto& b) {
-      return std::pair(a.a, a.b) < std::pair(b.a, b.b);
-    });
-    episode.frames.push_back(now_);
-    bridge_.Fill(tick, episode.frames.back().entities);
+    EpisodeFrame& frame = episode.frames.emplace_back(now_);
+    bridge_.Fill(tick, frame.entities);
+    for (const TouchEntry& touch : entry.touches) TakeTouch(touch, frame.entities, errors);
+    std::ranges::sort(now_.touches, {}, [](const auto& one) { return std::pair(one.a, one.b); });
+    frame.touches = now_.touches;
     if (episode.frames.size() > kMaxEpisodeFrames)
       errors.Add(entry.tick.where, fmt::format("more than {} frames", kMaxEpisodeFrames));
   }
@@ -445,7 +444,9 @@ class EpisodeReader {
     }
   }
 
-  void TakeTouch(const TouchEntry& entry, DiagnosticList& errors) {
+  /// `looks` are those of its frame, short gaps bridged.
+  void TakeTouch(const TouchEntry& entry, const std::vector<grammar::EntitySample>& looks,
+                 DiagnosticList& errors) {
     int a = IndexOf(entry.a.value, entry.a.where, errors),
         b = IndexOf(entry.b.value, entry.b.where, errors);
     if (a == grammar::kNoEntity || b == grammar::kNoEntity) return;
@@ -456,9 +457,8 @@ class EpisodeReader {
                          .up_on_a = std::clamp(entry.up_on_a, -1.0, 1.0),
                          .up_on_b = std::clamp(entry.up_on_b.value_or(-entry.up_on_a), -1.0, 1.0),
                          .normal_force_n = entry.force_n};
-    touch.vertical_speed_m_per_s = entry.vertical_speed_m_per_s.value_or(
-        SpeedAtTheUpper(touch, now_.entities[static_cast<std::size_t>(a)],
-                        now_.entities[static_cast<std::size_t>(b)]));
+    touch.vertical_speed_m_per_s = entry.vertical_speed_m_per_s.value_or(SpeedAtTheUpper(
+        touch, looks[static_cast<std::size_t>(a)], looks[static_cast<std::size_t>(b)]));
     if (entry.at_m && entry.normal) {
       touch.p_W_m = *entry.at_m;
       touch.nhat_BA_W = entry.normal->normalized();
