@@ -298,6 +298,29 @@ TEST(WatchMap, TimesThatGoBackAreToldInSeconds) {
       << watched.said.err;
 }
 
+// Also if no entity stands before it in the map.
+TEST(WatchMap, AHandThatIsHeldWhileItIsLostPointsWhereItPointed) {
+  std::string rows = "t,hand_x,hand_y,hand_z,cup_x,cup_y,cup_z\n";
+  for (int i = 0; i < 60; ++i)
+    rows += Text(i / 100.0) + (i < 20 || i >= 40 ? ",0,0,0.8" : ",nan,nan,nan") + ",0,0.2,0.8\n";
+  const Watched watched =
+      Watch(rows,
+            "unit: m\naxes: z_up\ntime_unit: s\nmissing: [nan]\nlost: hold\nsure: [unit]\n"
+            "columns: {time: t, position: [\"{}_x\", \"{}_y\", \"{}_z\"]}\nentities:\n"
+            "  hand: {from: hand, hand: true, ahead: [0, 1, 0], size_m: [0, 0, 0]}\n"
+            "  cup: {from: cup, class: Cup, size_m: [0.1, 0.1, 0.1]}\n");
+  WriteFile(watched.folder / "g.grammar",
+            "grammar g\nevent before(h: Hand, c: Cup)\n"
+            "  while distance(ahead(h, 20 cm), position(c)) < 5 cm\n");
+  const Said said = Prehend({"grammar", "watch", (watched.folder / "poses.csv").string(), "--map",
+                             (watched.folder / "map.yaml").string(), "--grammar",
+                             (watched.folder / "g.grammar").string(), "--json"});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  const std::vector<Json> found = Lines(said.out);
+  ASSERT_EQ(found.size(), 1u) << said.out;
+  EXPECT_EQ(found[0]["begin_tick"], 0);
+}
+
 TEST(WatchMap, AMapThatIsWrongIsAnErrorAtOnce) {
   const std::string csv = Csv([](int i) { return Row(i); });
   const auto refused = [&](const std::string& map, const std::string& why) {

@@ -214,9 +214,8 @@ grammar::Diagnostics LivePoses::Emit(episode::EpisodeStream& stream) {
     episode::HandEntry& hand =
         frame.hands.emplace_back(Named<episode::HandEntry>{.name = entity.name}).value;
     hand.trigger = triggers_[i].value_or(0);
-    if (e.ahead && frame.samples.back().name == entity.name &&
-        frame.samples.back().value.quat_wxyz) {
-      const Eigen::Vector4d& q = frame.samples.back().value.quat_wxyz->value;
+    if (e.ahead && sample.quat_wxyz) {  // lost: as it was turned last
+      const Eigen::Vector4d& q = sample.quat_wxyz->value;
       hand.ahead = Eigen::Quaterniond(q[0], q[1], q[2], q[3]) * e.ahead->value.normalized();
     }
   }
