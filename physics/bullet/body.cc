@@ -35,8 +35,9 @@ void Rub(btGeneric6DofSpring2Constraint& constraint, int axis, double friction) 
   constraint.setMaxMotorForce(axis, friction);
 }
 
-/// A body that a spring pulls slowly has not arrived yet. Below this speed it is within half a
-/// millimetre of its rest position, even if strong damping makes it creep for many seconds.
+/// A body that a spring pulls, or a damper lets sink, has not arrived yet. Below this speed it is
+/// within half a millimetre of its rest position, even if strong damping makes it creep for many
+/// seconds.
 constexpr double kSprungSleepSpeed_m_per_s = 1e-4;
 constexpr double kSprungSleepTurn_rad_per_s = 5e-4;
 
@@ -74,6 +75,19 @@ class HullShape : public btConvexHullShape {
   btVector3 gyration_m2_;
 };
 
+/// Bullet's own inertia is that of the bounding box: 1.4 times a capsule's, and a rolling one is
+/// late.
+struct CapsuleShape : btCapsuleShapeZ {
+  using btCapsuleShapeZ::btCapsuleShapeZ;
+  void calculateLocalInertia(btScalar mass, btVector3& inertia) const override {
+    const double r = getRadius(), length = 2 * getHalfHeight();
+    const double ball = mass / (1 + 0.75 * length / r), rod = mass - ball;
+    const double across = rod * (r * r / 4 + length * length / 12) +
+                          ball * (0.4 * r * r + length * length / 4 + 0.375 * length * r);
+    inertia.setValue(across, across, rod * r * r / 2 + ball * 0.4 * r * r);
+  }
+};
+
 /// A part of a compound. Bullet drops its contact points as soon as the bounding boxes of the two
 /// sides part: at once where both stand along the axes of the world, much later where they are
 /// turned. With some room points last alike however the scene is turned.
@@ -102,7 +116,7 @@ struct MakeShapeAs {
     return WithMargin<btCylinderShapeZ>(btVector3(s.radius_m, s.radius_m, s.length_m / 2));
   }
   Result operator()(const Capsule& s) const {
-    return std::make_unique<As<btCapsuleShapeZ>>(s.radius_m, s.length_m);
+    return std::make_unique<As<CapsuleShape>>(s.radius_m, s.length_m);
   }
   Result operator()(const Hull& s) const { return std::make_unique<As<HullShape>>(s); }
 
@@ -146,7 +160,7 @@ BulletJoint::BulletJoint(const Joint& joint, int sharers, btRigidBody& base, btR
     constraint_->setLimit(axis, 0, 0);
     constraint_->setParam(BT_CONSTRAINT_STOP_ERP, kStopErrorReduction, axis);
   }
-  if (joint.spring > 0) {
+  if (joint.spring > 0 || joint.damping > 0) {
     for (btRigidBody* side : {&base, &body})
       side->setSleepingThresholds(kSprungSleepSpeed_m_per_s, kSprungSleepTurn_rad_per_s);
   }

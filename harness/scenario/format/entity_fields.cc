@@ -377,9 +377,9 @@ ValueFormat<EntityYaml> EntityFormat() {
                 "Slows rolling; default 0.006 for a sphere and for grains, 0 for the others.")
       .Optional("restitution", &E::restitution, Number(0, 1),
                 "0: does not bounce. 1: bounces without loss.")
-      .Optional("linear_damping_per_s", &E::linear_damping_per_s, Number(0, 100),
+      .Optional("linear_damping_per_s", &E::linear_damping_per_s, Number(0, 36),
                 "Rate at which its speed decays.")
-      .Optional("angular_damping_per_s", &E::angular_damping_per_s, Number(0, 100),
+      .Optional("angular_damping_per_s", &E::angular_damping_per_s, Number(0, 36),
                 "Rate at which its turning decays.")
       .Optional("on", &E::on, Identifier(), "The entity it stands on; then at_m is [x, y].")
       .Optional("in", &E::in, Identifier(),

@@ -95,6 +95,28 @@ TEST_P(BounceTest, EveryBounceIsAContactAtItsTime) {
       }
 }
 
+TEST(Bounce, HasNoMoreEnergyAtMoreTicksPerSecond) {
+  for (const int rate_hz : {480, 960, 1920, 4800})
+    for (const double restitution : {0.0, 0.5, 1.0}) {
+      SCOPED_TRACE(testing::Message() << rate_hz << " Hz, restitution " << restitution);
+      Scene scene = MakeScene({0.05, 0.25, restitution}, Engine::kBullet);
+      scene.world.rate_hz = rate_hz;
+      scene.bodies[1].shapes = {{Box{{0.1, 0.1, 0.1}}, {}}};
+      const auto world = MakeWorld(scene);
+      Snapshot snapshot;
+      double least_m = 1, apex_m = 0;
+      for (int tick = 0; tick < rate_hz * 0.6; ++tick) {
+        world->Step({});
+        world->Describe(snapshot);
+        const double z_m = snapshot.bodies[1].X_WB.p_m.z();
+        if (tick < rate_hz * 0.24) least_m = std::min(least_m, z_m);
+        if (tick > rate_hz * 0.25) apex_m = std::max(apex_m, z_m);
+      }
+      EXPECT_NEAR(least_m, 0.05, 0.006);
+      EXPECT_NEAR(apex_m - 0.05, 0.25 * restitution * restitution, 0.008);
+    }
+}
+
 /// Of bodies that nothing touched in this tick, the largest change of speed that is not gravity's.
 double PushFromNowhere(const Snapshot& before, const Snapshot& now) {
   std::vector<char> touched(now.bodies.size(), 0);

@@ -57,6 +57,28 @@ TEST(Friction, ABlockSlidesAboveTheSameAngleInEveryDirection) {
   }
 }
 
+TEST(Friction, ACapsuleRollsAsSolidsDo) {
+  const Eigen::Quaterniond slope(Eigen::AngleAxisd(0.25, Eigen::Vector3d::UnitY()));
+  const Eigen::Quaterniond lying(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX()));
+  const Body floor{.name = "floor",
+                   .shapes = {{Box{{9, 2, 0.1}}, {}}},
+                   .fixed = true,
+                   .friction = 1,
+                   .X_WB = {slope * Eigen::Vector3d(0, 0, -0.05), slope}};
+  const Body roller{.name = "roller",
+                    .shapes = {{Capsule{0.1, 0.2}, {}}},
+                    .mass_kg = 1,
+                    .friction = 1,
+                    .X_WB = {slope * Eigen::Vector3d(0, 0, 0.1), slope * lying}};
+  const auto world = MakeBulletWorld(Scene{.bodies = {floor, roller}}, {});
+  for (int tick = 0; tick < 480; ++tick) world->Step({});
+  Snapshot snapshot;
+  world->Describe(snapshot);
+  // 0.6 of the mass is a cylinder, 0.4 a ball: their moments of inertia in units of m r^2.
+  const double moment = 0.6 * 0.5 + 0.4 * 0.4;
+  EXPECT_NEAR(snapshot.bodies[1].v_WB_m_per_s.norm(), 9.81 * std::sin(0.25) / (1 + moment), 0.03);
+}
+
 TEST(Friction, ABallRollsAboveTheSameAngleInEveryDirection) {
   const double radius_m = 0.03;
   const double limit_deg = std::atan(0.006 * kBoardFriction / radius_m) / kDegreeInRad;  // 9.1
