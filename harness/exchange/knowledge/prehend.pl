@@ -336,8 +336,8 @@ occurs(E, Times) :-
     (   nonvar(E) -> true ; name(dul, 'Event', Event), instance(E, Event) ),
     members(E, Members),
     maplist(seconds, Members, Begins, Ends), min_list(Begins, B), max_list(Ends, F),
-    (   var(Begin) -> Begin = B ; number(Begin), Begin >= B ),
-    (   var(End) -> End = F ; number(End), End =< F ),
+    (   var(Begin) -> Begin = B ; number(Begin), Begin >= B, Begin =< F ),
+    (   var(End) -> End = F ; number(End), End =< F, End >= B ),
     Members = [First | _],
     once(episode_of(First, Episode)), b_setval(prehend_episode, Episode).
 

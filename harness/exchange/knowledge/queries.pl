@@ -90,7 +90,7 @@ number_of(E, N) :-
     ( growth(F, Ns, Grown) -> of_size(Grown) ; true ),
     Applied =.. [F | Ns], M is Applied, bits(M, Bits), of_size(Bits), N = M.
 function(0, [pi, e, inf, nan, epsilon]).
-function(1, [-, +, abs, sign, min, max, sqrt, exp, log, log2, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, asinh,
+function(1, [-, +, abs, sign, min, max, sqrt, exp, log, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, asinh,
              acosh, atanh, float, integer, truncate, round, floor, ceiling, float_integer_part, float_fractional_part,
              rational, rationalize, numerator, denominator, \, msb]).
 function(2, [+, -, *, /, //, mod, rem, div, rdiv, min, max, **, ^, >>, <<, /\, \/, xor, gcd, atan, atan2, copysign, log,
