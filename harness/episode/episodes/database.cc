@@ -170,9 +170,10 @@ std::string WhyNotEpisodes(const std::string& path) {
   const std::uint64_t page = byte(16) << 8 | byte(17);
   const std::uint64_t pages = byte(28) << 24 | byte(29) << 16 | byte(30) << 8 | byte(31);
   const std::uint64_t wanted = (page == 1 ? 65536 : page) * pages;
-  const std::uintmax_t size = fs::file_size(path, error);
   const std::string beside = fs::weakly_canonical(path, error).string();
   const fs::file_type journal = fs::symlink_status(beside + "-journal", error).type();
+  // After the journal is seen to be gone: until then another process may be writing pages.
+  const std::uintmax_t size = fs::file_size(path, error);
   if (journal == fs::file_type::not_found && size < wanted)
     return fmt::format("is cut off: it has {} of {} bytes", size, wanted);
   // SQLite undoes what a journal says, and removes the file that one ends with: ours names none.
