@@ -89,10 +89,28 @@ struct EntitySample {
   int gazes_at = kNoEntity;
 };
 
+// Not tracked is a value: a look of which nobody knows where its entity is. No condition that reads
+// such a look holds, and neither does its opposite (docs/recording-format.md). Tested by
+// tests/grammar/engine/tracking_test.cc
+
+inline bool IsTracked(const EntitySample& look) { return !std::isnan(look.p_WB_m.x()); }
+
+/// Of two numbers or none.
+inline bool SameNumber(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
 /// Whether no grammar can tell one look from the other: in all but `asleep` they are the same.
 inline bool SameFacts(const EntitySample& a, const EntitySample& b) {
   // All are named, so that a new one does not compile before it is here.
   const auto& [p_WB_m, q_WB, v_WB, w_WB, asleep, joint_position, joint_fraction, gazes_at] = a;
+  if (!IsTracked(a) && !IsTracked(b)) {
+    const auto same = [](const auto& x, const auto& y) {
+      return std::equal(x.data(), x.data() + x.size(), y.data(), SameNumber);
+    };
+    return same(p_WB_m, b.p_WB_m) && same(q_WB.coeffs(), b.q_WB.coeffs()) &&
+           same(v_WB, b.v_WB_m_per_s) && same(w_WB, b.w_WB_rad_per_s) &&
+           SameNumber(joint_position, b.joint_position) &&
+           SameNumber(joint_fraction, b.joint_fraction) && gazes_at == b.gazes_at;
+  }
   return p_WB_m == b.p_WB_m && q_WB.coeffs() == b.q_WB.coeffs() && v_WB == b.v_WB_m_per_s &&
          w_WB == b.w_WB_rad_per_s && joint_position == b.joint_position &&
          joint_fraction == b.joint_fraction && gazes_at == b.gazes_at;
@@ -179,12 +197,6 @@ struct FrameChanges {
 };
 
 inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
-
-// Not tracked is a value: a look of which nobody knows where its entity is. No condition that reads
-// such a look holds, and neither does its opposite (docs/recording-format.md). Tested by
-// tests/grammar/engine/tracking_test.cc
-
-inline bool IsTracked(const EntitySample& look) { return !std::isnan(look.p_WB_m.x()); }
 
 /// `vertical_speed_m_per_s` where no contact point is known: the upper entity is close to it. Side
 /// by side, nothing bears load.

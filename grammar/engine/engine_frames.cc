@@ -227,9 +227,8 @@ void Engine::ApplyContacts(std::span<const Touch> touches) {
         swapped ? touch.up_on_b : touch.up_on_a, swapped ? touch.up_on_a : touch.up_on_b,
         touch.normal_force_n, touch.vertical_speed_m_per_s, touch.sensor_sets);
     const ThresholdSet changed = crossed ^ state.crossed_thresholds;
-    if (instance.open && (keeps_touches_ ? SampleOf(touch, swapped, state.touches.back().frame) ==
-                                               state.touches.back()
-                                         : changed == 0))
+    if (instance.open &&
+        (keeps_touches_ ? SampleOf(touch, swapped, now).Says(state.touches.back()) : changed == 0))
       continue;
     state.crossed_thresholds = crossed;
     if (recalls_touches_) Keep(instance, touch, swapped);

@@ -45,7 +45,12 @@ struct TouchSample {
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d nhat_W = Eigen::Vector3d::Zero();
   std::uint32_t sensor_sets = 0;
-  friend bool operator==(const TouchSample&, const TouchSample&) = default;
+  /// But for the frame: whether nobody can tell one from the other.
+  bool Says(const TouchSample& other) const {
+    return up == other.up && force_n == other.force_n && p_W_m == other.p_W_m &&
+           nhat_W == other.nhat_W && sensor_sets == other.sensor_sets &&
+           SameNumber(vertical_speed_m_per_s, other.vertical_speed_m_per_s);
+  }
 };
 
 /// Which thresholds it has crossed.

@@ -3,6 +3,7 @@
 #include "grammar/base/frame.h"
 #include "grammar/base/solid.h"
 #include "grammar/name_events.h"
+#include "grammar/state/instances.h"
 #include "tests/grammar/scene.h"
 
 namespace prehend::grammar {
@@ -45,6 +46,22 @@ std::string While(const std::string& condition) {
   return "grammar t\nevent e(hand: Hand, cup: Cup, tray: Movable) while part_of(cup, tray) and "
          "height(hand) < 100 m and (" +
          condition + ")\n";
+}
+
+TEST(NotTracked, WhatIsLostIsAsItWasInTheFrameBefore) {
+  EntitySample lost = NotTracked();
+  EXPECT_TRUE(SameFacts(lost, NotTracked()));
+  EXPECT_FALSE(SameFacts(lost, {}));
+  EXPECT_FALSE(SameFacts({}, lost));
+  lost.gazes_at = 1;
+  EXPECT_FALSE(SameFacts(lost, NotTracked()));
+  lost = NotTracked();
+  lost.joint_position = 0.5;  // somebody else measures it
+  EXPECT_FALSE(SameFacts(lost, NotTracked()));
+  TouchSample stands{.frame = 1, .up = {1, -1}, .vertical_speed_m_per_s = kNotKnown};
+  EXPECT_TRUE(stands.Says({.frame = 2, .up = {1, -1}, .vertical_speed_m_per_s = kNotKnown}));
+  EXPECT_FALSE(stands.Says({.frame = 2, .up = {1, -1}}));
+  EXPECT_FALSE(stands.Says({.frame = 2, .vertical_speed_m_per_s = kNotKnown}));
 }
 
 TEST(NotTracked, NeitherAConditionNorItsOppositeHolds) {
