@@ -29,7 +29,24 @@ Result<MotionTrack> ReadTrack(const std::string& path, const RecordingYaml& entr
              entry.press_s});
 }
 
-/// Only the samples from from_s to to_s, with times since the first of them.
+TrackSample Between(const TrackSample& a, const TrackSample& b, double share) {
+  TrackSample sample = a;
+  sample.X_RD = {a.X_RD.p_m + share * (b.X_RD.p_m - a.X_RD.p_m),
+                 a.X_RD.q.slerp(share, b.X_RD.q).normalized()};
+  if (a.trigger && b.trigger) *sample.trigger += share * (*b.trigger - *a.trigger);
+  return sample;
+}
+
+BodySample Between(const BodySample& a, const BodySample& b, double share) {
+  BodySample sample = a;
+  sample.posture = physics::Mix(a.posture, b.posture, share);
+  for (std::size_t i = 0; i < a.points.size(); ++i)
+    sample.points[i] += share * (b.points[i] - a.points[i]);
+  return sample;
+}
+
+/// Only the samples from from_s to to_s, with times since from_s. Between two samples the motion
+/// begins there, too, so that recordings of one take stay together; in a gap with the next sample.
 template <class Track>
 bool Cut(const RecordingYaml& entry, Track& track, DiagnosticList& errors) {
   auto& samples = track.samples;
@@ -44,16 +61,26 @@ bool Cut(const RecordingYaml& entry, Track& track, DiagnosticList& errors) {
     return false;
   }
   constexpr double kFrame_s = 0.0005;  // frames of 0.0333333 s: 30 of them are 1 s
-  std::erase_if(samples, [&](const auto& s) {
-    return s.t_s < entry.from_s.value - kFrame_s || s.t_s > to_s + kFrame_s;
-  });
+  const double from_s = entry.from_s.value;
+  const auto is_early = [&](const auto& s) { return s.t_s < from_s - kFrame_s; };
+  const auto first = std::ranges::find_if_not(samples, is_early);
+  const bool is_between = first != samples.begin() && first != samples.end() &&
+                          first->t_s > from_s + kFrame_s &&
+                          first->t_s - (first - 1)->t_s <= entry.max_gap_s;
+  if (is_between) {
+    auto& before = *(first - 1);
+    before = Between(before, *first, (from_s - before.t_s) / (first->t_s - before.t_s));
+    before.t_s = from_s;
+  }
+  std::erase_if(samples, [&](const auto& s) { return is_early(s) || s.t_s > to_s + kFrame_s; });
   const double first_s = samples.empty() ? 0 : samples.front().t_s;
   for (auto& sample : samples) sample.t_s -= first_s;
-  if (samples.size() >= 2) return true;
+  const std::size_t recorded = samples.size() - (is_between ? 1 : 0);
+  if (recorded >= 2) return true;
   const Where where = entry.to_s ? entry.to_s->where : entry.from_s.where;
   errors.Add(where,
-             fmt::format("between {} and {} s the recording has {} of at least 2 samples",
-                         entry.from_s.value, to_s, samples.size()),
+             fmt::format("between {} and {} s the recording has {} of at least 2 samples", from_s,
+                         to_s, recorded),
              fmt::format("the recording lasts {:.3f} s", last_s));
   return false;
 }

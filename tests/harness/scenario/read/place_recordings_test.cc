@@ -75,6 +75,22 @@ TEST_F(RecordedInputTest, IsCutTurnedAndShifted) {
   EXPECT_LT((poses.front().X_WH.q * Vector3d::UnitX() + Vector3d::UnitY()).norm(), 1e-9);
 }
 
+TEST_F(RecordedInputTest, CutBetweenTwoSamplesItBeginsThere) {
+  std::ofstream(folder_ / "slow.csv") << "t_s,x_m,y_m,z_m\n0,0,0,1\n0.2,0.05,0,1\n0.4,0.1,0,1\n";
+  for (const char* file : {"line.csv", "slow.csv"}) {
+    const auto poses = Poses(std::string("recording: ") + file + ", join_s: 0, from_s: 0.137");
+    ASSERT_GE(poses.size(), 3u) << file;
+    EXPECT_EQ(poses.front().t_s, 0) << file;
+    for (const auto& pose : poses)
+      EXPECT_NEAR(pose.X_WH.p_m.x(), (0.137 + pose.t_s) / 4, 1e-5) << file << " " << pose.t_s;
+  }
+  // In a gap that is not bridged it begins with the next sample.
+  std::ofstream(folder_ / "gap.csv") << "t_s,x_m,y_m,z_m\n0,0,0,1\n1,0.1,0,1\n1.1,0.2,0,1\n";
+  const auto poses = Poses("recording: gap.csv, join_s: 0, from_s: 0.9");
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_EQ(poses.front().X_WH.p_m.x(), 0.1);
+}
+
 TEST_F(RecordedInputTest, FollowsTheRecordingWithoutDriftAtAnyRate) {
   for (const int rate_hz : {477, 960}) {
     const auto read = ReadScenarioText(
