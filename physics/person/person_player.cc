@@ -76,7 +76,7 @@ class PersonPlayer::Resolver {
     const TargetState from{.X_WH = player_.targets_.X_WHead};
     player_.head_ = {WaypointTrajectory(from, head.poses), player_.t_s_};
     player_.head_leaving_.reset();
-    player_.jumps_ = head.poses.front().t_s <= 0;
+    if (head.poses.front().t_s <= 0) player_.jumping_ = std::max<std::size_t>(player_.jumping_, 1);
   }
   void operator()(const BodyPosesStep& body) {
     const Posture from = PostureOf(player_.person_, player_.targets_);
@@ -84,7 +84,7 @@ class PersonPlayer::Resolver {
     player_.body_ = RecordedBody{PostureTrack(from, body.postures), player_.t_s_};
     player_.leaving_.reset();
     if (player_.head_leaving_) player_.head_leaving_->progress.duration_s = join_s;
-    player_.jumps_ = join_s <= 0;
+    if (join_s <= 0) player_.jumping_ = player_.places_.size();
   }
 
  private:
@@ -353,8 +353,8 @@ void PersonPlayer::Advance(const Snapshot& now, World& world) {
   places_ = PlacesOf(person_, targets_, places_);
   touches_ = fixed_.TouchedBy(person_, places_);
   for (std::size_t i = 0; i < places_.size(); ++i)
-    world.MoveKinematic(person_.head + static_cast<int>(i), places_[i], jumps_);
-  jumps_ = false;
+    world.MoveKinematic(person_.head + static_cast<int>(i), places_[i], i < jumping_);
+  jumping_ = 0;
 }
 
 double PersonPlayer::LimbIsShortBy(int limb) const {

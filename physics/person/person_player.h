@@ -118,7 +118,8 @@ class PersonPlayer {
   std::optional<RecordedBody> body_;
   std::optional<Leaving> leaving_;
   std::optional<HeadLeaving> head_leaving_;
-  bool jumps_ = false;  ///< in the next tick: a recording begins at once
+  /// So many parts, from the head on, do in the next tick: a recording of them begins at once.
+  std::size_t jumping_ = 0;
   EyesAndHead gaze_;
 };
 

@@ -252,6 +252,37 @@ TEST(PersonPlayerTest, ARecordingThatJoinsAtOnceJumpsWithoutSpeed) {
   }
 }
 
+/// Counts the bodies that jump.
+struct CountingWorld : World {
+  void Step(const std::vector<HandCommand>&) override {}
+  void Describe(Snapshot&) const override {}
+  void MoveKinematic(BodyIndex, const Pose&, bool jumps) override { jumped += jumps ? 1 : 0; }
+  std::size_t jumped = 0;
+};
+
+TEST(PersonPlayerTest, AHeadThatJumpsStopsNoOtherPart) {
+  const Scene scene = Before({2, 2, 0.4});
+  const Posture there = PostureOf(scene.persons[0], Standing(scene, scene.persons[0]));
+  const auto jumped = [&](const PersonStep& step) {
+    Script script;
+    script.stages = {{{}, {step}}};
+    PersonPlayer player(scene, script, 0);
+    Snapshot now;
+    now.bodies.resize(scene.bodies.size());
+    player.Begin(0, {}, {0}, now);
+    CountingWorld world;
+    player.Advance(now, world);
+    const std::size_t first = world.jumped;
+    player.Advance(now, world);
+    EXPECT_EQ(world.jumped, first);
+    return first;
+  };
+  EXPECT_EQ(jumped(RecordedHead({{1, 1, 1.5}, {1, 1, 1.5}}, 0)), 1u);
+  EXPECT_EQ(jumped(RecordedHead({{1, 1, 1.5}, {1, 1, 1.5}}, 0.1)), 0u);
+  EXPECT_EQ(jumped({0, BodyPosesStep{{{0, there}, {0.5, there}}}, 0.5}),
+            scene.bodies.size() - kHead);
+}
+
 TEST(PersonPlayerTest, AHeadThatIsRecordedFarFromItsNeckIsNoted) {
   const Scene scene = Before({2, 2, 0.4});
   Script script;
