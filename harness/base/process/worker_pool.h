@@ -69,14 +69,19 @@ LimitedEnd RunWithinLimits(const std::function<int()>& job, const WorkerLimits& 
 /// As CBOR, since JSON has no infinite numbers and refuses bytes that are no UTF-8.
 template <typename T>
 std::string ToWire(const T& value) {
-  const std::vector<std::uint8_t> bytes = nlohmann::json::to_cbor(nlohmann::json(value));
-  return {bytes.begin(), bytes.end()};
+  std::string bytes;
+  nlohmann::json::to_cbor(value, bytes);
+  return bytes;
 }
 
 /// Throws nlohmann::json::exception if the bytes are not from ToWire() of that type.
 template <typename T>
 T FromWire(const std::string& bytes) {
-  return nlohmann::json::from_cbor(bytes).get<T>();
+  nlohmann::json value = nlohmann::json::from_cbor(bytes);
+  if constexpr (std::is_same_v<T, nlohmann::json>)
+    return value;
+  else
+    return value.get<T>();
 }
 
 class ProgressCounters {

@@ -412,8 +412,12 @@ ScenarioVerdict VerdictOn(CheckedEpisode checked) {
   const episode::RunResult& run = checked.run.result;
   ScenarioVerdict& verdict = checked.verdict;
   if (!checked.recording) {
+    std::error_code error;
+    // Fields are compared with those of the last pass, or kept for the next run.
+    const bool with_fields = !request.leave_nothing_behind ||
+                             fs::exists(LastPasses(request.root).TracePath(request.id), error);
     verdict.settings = SettingsOf(checked.run.loaded, request.Run(), verdict.inputs, request.root,
-                                  checked.run.task.files);
+                                  checked.run.task.files, with_fields);
     verdict.shows = checked.run.loaded.scenario.shows;
     verdict.notes = episode::NoteLines(checked.run.loaded.scenario, run);
     verdict.state_hash = episode::HashText(run.state_hash);

@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "harness/episode/sense/episode_format.h"
 #include "harness/episode/sense/sensing.h"
@@ -19,8 +22,41 @@ namespace prehend::suite {
 using grammar::Tick;
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExplainedEvent, event, begin, end, began, ended)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DecidingSignal, clause, how, unit, tick, golden_tick, ticks,
-                                   values, limits)
+
+namespace {
+
+// Courses are long: a value of JSON for each number costs more than all that is asked of it.
+
+template <typename T>
+nlohmann::json AsBytes(const std::vector<T>& numbers) {
+  const auto* const first = reinterpret_cast<const std::uint8_t*>(numbers.data());
+  return nlohmann::json::binary(
+      std::vector<std::uint8_t>(first, first + sizeof(T) * numbers.size()));
+}
+
+template <typename T>
+void FromBytes(const nlohmann::json& packed, std::vector<T>& numbers) {
+  const auto& bytes = packed.get_binary();
+  numbers.resize(bytes.size() / sizeof(T));
+  if (!numbers.empty()) std::memcpy(numbers.data(), bytes.data(), sizeof(T) * numbers.size());
+}
+
+}  // namespace
+
+void to_json(nlohmann::json& packed, const DecidingSignal& signal) {
+  const auto& [clause, how, unit, tick, golden_tick, ticks, values, limits] = signal;
+  packed = {clause, how, unit, tick, golden_tick, AsBytes(ticks), AsBytes(values), AsBytes(limits)};
+}
+
+void from_json(const nlohmann::json& packed, DecidingSignal& signal) {
+  auto& [clause, how, unit, tick, golden_tick, ticks, values, limits] = signal;
+  std::tie(clause, how, unit, tick, golden_tick) =
+      packed.get<std::tuple<std::string, std::string, std::string, Tick, Tick>>();
+  FromBytes(packed.at(5), ticks);
+  FromBytes(packed.at(6), values);
+  FromBytes(packed.at(7), limits);
+}
+
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExplainedDifference, what, text, signals)
 
 void to_json(nlohmann::json& packed, const Explained& explained) {

@@ -211,19 +211,24 @@ std::map<std::string, std::string> GrammarSettings(std::string_view text) {
 
 Settings SettingsOf(const episode::LoadedRun& loaded, const episode::RunRequest& request,
                     const FileHashes& inputs, const std::string& root,
-                    const std::map<std::string, std::string>& kept) {
+                    const std::map<std::string, std::string>& kept, bool with_fields) {
   Settings settings;
   std::map<std::string, std::string> texts;
   for (const grammar::ProgramParam& param : grammar::Describe(*loaded.program).params)
     settings[RelativeTo(root, Called(param.file, loaded))][param.name] =
         ParameterText(param, request, texts);
+  const auto is_wanted = [&](const std::string& path) {
+    return with_fields || path.ends_with(".grammar");
+  };
   for (const auto& [path, hash] : inputs) {
+    if (!is_wanted(path)) continue;
     if (path == loaded.scenario.file)
       AddValues(loaded.document.root, "", settings[RelativeTo(root, path)]);
     else if (hash != kNoFile)
       AddFile(path, settings[RelativeTo(root, path)]);
   }
-  for (const auto& [path, text] : kept) AddText(path, text, settings[path]);
+  for (const auto& [path, text] : kept)
+    if (is_wanted(path)) AddText(path, text, settings[path]);
   std::erase_if(settings, [](const auto& file) { return file.second.empty(); });
   for (const std::string& setting : request.settings) {
     const std::size_t equals = setting.find('=');

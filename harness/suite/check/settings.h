@@ -24,10 +24,10 @@ using Settings = std::map<std::string, std::map<std::string, std::string>>;
 
 /// Of the parameters of the grammar and of all YAML files among `inputs`, with the changes of the
 /// command line. At most 5,000 values of each file. Files are relative to `root`; `kept`: texts of
-/// those that are read from copies.
+/// those that are read from copies. Without `with_fields`: of grammars only.
 Settings SettingsOf(const episode::LoadedRun& loaded, const episode::RunRequest& request,
                     const FileHashes& inputs, const std::string& root,
-                    const std::map<std::string, std::string>& kept = {});
+                    const std::map<std::string, std::string>& kept = {}, bool with_fields = true);
 
 /// Of these files as they are written, although nothing can be made of them.
 Settings SettingsOfFiles(const std::vector<std::string>& files, const std::string& root);
