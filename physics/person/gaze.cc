@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "physics/motion/trajectory.h"
+#include "physics/person/skeleton.h"
 #include "physics/scene/geometry.h"
 
 namespace prehend::physics {
@@ -20,14 +21,36 @@ constexpr double kSaccade_s_per_deg = 0.0022;
 constexpr double kSaccadeFrom_deg = 2;
 /// Time after which the head has covered 63 % of its way.
 constexpr double kHeadLag_s = 0.15;
+/// In yaw, and in pitch.
+constexpr double kHeadFastest_rad_per_s = 600 * std::numbers::pi / 180;
 
 double AngleDeg(const Vector3d& a, const Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi;
 }
 
-Vector3d Between(const Vector3d& from, const Vector3d& to, double x) {
+double YawOf(const Vector3d& way) { return std::atan2(way.y(), way.x()); }
+double PitchOf(const Vector3d& way) { return std::asin(std::clamp(way.z(), -1.0, 1.0)); }
+
+Vector3d Direction(double yaw, double pitch) {
+  return {std::cos(pitch) * std::cos(yaw), std::cos(pitch) * std::sin(yaw), std::sin(pitch)};
+}
+
+/// Eyes alone look so steeply; the head keeps its yaw.
+bool IsSteep(const Vector3d& way) { return std::abs(way.z()) > kSteepestHead; }
+
+/// The shorter way round; to the left if both are as long. 0 straight up and down.
+double YawBetween(const Vector3d& from, const Vector3d& to) {
+  const double way =
+      std::atan2(from.x() * to.y() - from.y() * to.x(), from.head<2>().dot(to.head<2>()));
+  return way > 1e-9 - std::numbers::pi ? way : std::numbers::pi;
+}
+
+/// A share of the way: straight, or, to what is behind, around by this yaw.
+Vector3d Between(const Vector3d& from, const Vector3d& to, double yaw, double share) {
+  if (std::abs(yaw) > std::numbers::pi / 2)
+    return Direction(YawOf(from) + share * yaw, std::lerp(PitchOf(from), PitchOf(to), share));
   const Eigen::Quaterniond turn = RotationBetween(from, to);
-  return (Eigen::Quaterniond::Identity().slerp(x, turn) * from).normalized();
+  return (Eigen::Quaterniond::Identity().slerp(share, turn) * from).normalized();
 }
 
 }  // namespace
@@ -143,16 +166,37 @@ void EyesAndHead::Turn(const Vector3d& wanted_W, double dt_s) {
       saccade_s_ = kSaccadeBase_s + kSaccade_s_per_deg * way_deg;
       since_s_ = 0;
       from_W_ = eyes_W_;
+      yaw_ = IsSteep(from_W_) || IsSteep(wanted_W) ? 0 : YawBetween(from_W_, wanted_W);
     }
   }
   since_s_ += dt_s;
   if (saccade_s_ > 0 && since_s_ < saccade_s_) {
-    eyes_W_ = Between(from_W_, wanted_W, MinimumJerk(since_s_ / saccade_s_));
+    // Round the same side, though her eyes move with her head past what is straight behind.
+    if (std::abs(yaw_) > std::numbers::pi / 2)
+      yaw_ += std::remainder(YawBetween(from_W_, wanted_W) - yaw_, 2 * std::numbers::pi);
+    eyes_W_ = Between(from_W_, wanted_W, yaw_, MinimumJerk(since_s_ / saccade_s_));
   } else {
     saccade_s_ = 0;
     eyes_W_ = wanted_W;
   }
-  head_W_ = Between(head_W_, eyes_W_, 1 - std::exp(-dt_s / kHeadLag_s));
+  TurnHead(dt_s);
+}
+
+void EyesAndHead::TurnHead(double dt_s) {
+  const Vector3d to_W =
+      IsSteep(eyes_W_)
+          ? Direction(YawOf(head_W_), std::copysign(std::asin(kSteepestHead), eyes_W_.z()))
+          : eyes_W_;
+  const double yaw = YawBetween(head_W_, to_W);
+  const Vector3d next_W = Between(head_W_, to_W, yaw, 1 - std::exp(-dt_s / kHeadLag_s));
+  const double most = kHeadFastest_rad_per_s * dt_s;
+  const double yaw_step = YawBetween(head_W_, next_W);
+  const double pitch_step = PitchOf(next_W) - PitchOf(head_W_);
+  if (std::max(std::abs(yaw_step), std::abs(pitch_step)) <= most)
+    head_W_ = next_W;
+  else
+    head_W_ = Direction(YawOf(head_W_) + std::clamp(yaw_step, -most, most),
+                        PitchOf(head_W_) + std::clamp(pitch_step, -most, most));
 }
 
 }  // namespace prehend::physics

@@ -61,7 +61,8 @@ class GazeLeader {
 };
 
 /// Moves eyes and head. Eyes jump to a new target in a saccade of 21 ms plus 2.2 ms per degree
-/// (Carpenter 1988) and follow a moving target. The head follows more slowly.
+/// (Carpenter 1988) and follow a moving target. The head follows more slowly. To what is behind
+/// they turn to the side, not over the vertical.
 class EyesAndHead {
  public:
   explicit EyesAndHead(const Eigen::Vector3d& ahead_W)
@@ -76,8 +77,11 @@ class EyesAndHead {
   const Eigen::Vector3d& head_W() const { return head_W_; }
 
  private:
+  void TurnHead(double dt_s);
+
   Eigen::Vector3d eyes_W_, head_W_;
   Eigen::Vector3d from_W_;  ///< where the saccade began
+  double yaw_ = 0;          ///< its way round the vertical, radians
   double saccade_s_ = 0;    ///< its duration; 0: none
   double since_s_ = 0;
 };

@@ -303,11 +303,10 @@ Eigen::Vector3d NeckTop(const Person& person, const BodyTargets& targets) {
 }
 
 Pose HeadToward(const Person& person, const Vector3d& p_W_neck, const Vector3d& toward_W) {
-  // Yaw and pitch, no roll. Yaw is undefined straight up and down, so the pitch is limited.
-  constexpr double kMaxPitchSine = 0.98;
+  // Yaw and pitch, no roll.
   const double level = std::hypot(toward_W.x(), toward_W.y());
   const double yaw = level > 1e-9 ? std::atan2(toward_W.y(), toward_W.x()) : 0;
-  const double pitch = -std::asin(std::clamp(toward_W.z(), -kMaxPitchSine, kMaxPitchSine));
+  const double pitch = -std::asin(std::clamp(toward_W.z(), -kSteepestHead, kSteepestHead));
   const Eigen::Quaterniond q =
       Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch, Vector3d::UnitY());
   return {p_W_neck + q * Vector3d(0, 0, kHeadCentre * person.height_m), q};

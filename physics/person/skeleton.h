@@ -50,6 +50,8 @@ Eigen::Vector3d ForearmOf(LimbEnd end, const Person& person, const BodyTargets& 
 Eigen::Vector3d FoldedForearm(LimbEnd end, const Pose& X_WS);
 /// The joint between neck and head, metres.
 Eigen::Vector3d NeckTop(const Person& person, const BodyTargets& targets);
+/// Sine of the steepest pitch of a head: near the vertical its yaw would be undefined.
+inline constexpr double kSteepestHead = 0.98;
 /// Pose of a head that looks in this direction.
 Pose HeadToward(const Person& person, const Eigen::Vector3d& p_W_neck,
                 const Eigen::Vector3d& toward_W);

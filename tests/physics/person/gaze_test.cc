@@ -5,6 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+#include <numbers>
+
 #include "physics/person/skeleton.h"
 #include "tests/physics/tabletop.h"
 
@@ -92,6 +96,58 @@ TEST(GazeTest, AMovingTargetIsFollowedWithoutLag) {
     gaze.Turn(there, 1.0 / 480);
     ASSERT_LT((gaze.eyes_W() - there).norm(), 1e-9) << tick;
   }
+}
+
+/// How far her head turns in a tick at most, degrees, while she looks along these ways in turn.
+double FastestOf(EyesAndHead& gaze, const std::function<Vector3d(int)>& way, int ticks) {
+  const auto facing = [&] { return HeadToward(Person{}, Vector3d::Zero(), gaze.head_W()).q; };
+  double fastest_rad = 0;
+  for (int tick = 0; tick < ticks; ++tick) {
+    const Eigen::Quaterniond before = facing();
+    gaze.Turn(way(tick).normalized(), 1.0 / 480);
+    fastest_rad = std::max(fastest_rad, facing().angularDistance(before));
+  }
+  return fastest_rad * 480 * 180 / std::numbers::pi;
+}
+
+TEST(GazeTest, WhatIsBehindIsLookedAtOverAShoulder) {
+  for (const double left_m : {0.0, -0.0, 1e-3, -1e-3, 0.026, -0.026}) {
+    EyesAndHead gaze(Vector3d::UnitX());
+    double lowest = 1, highest = -1, side = 0;
+    const double fastest = FastestOf(
+        gaze,
+        [&](int) {
+          lowest = std::min({lowest, gaze.eyes_W().z(), gaze.head_W().z()});
+          highest = std::max({highest, gaze.eyes_W().z(), gaze.head_W().z()});
+          side += gaze.head_W().y();
+          return Vector3d(-3, left_m, -0.1);
+        },
+        960);
+    EXPECT_GT(lowest, -0.05) << left_m;  // the shortest way of 90 degrees goes below both ends
+    EXPECT_LT(highest, 1e-9) << left_m;
+    EXPECT_GT(left_m < 0 ? -side : side, 0) << left_m << ": the shorter way, or to the left";
+    EXPECT_LE(fastest, 600.1) << left_m;
+    EXPECT_LT((gaze.head_W() - gaze.eyes_W()).norm(), 1e-3) << left_m;
+  }
+}
+
+TEST(GazeTest, AHeadDoesNotWhirlAroundWhatPassesBelowOrAbove) {
+  for (const double up_m : {-1.4, -0.1, 0.0, 0.5}) {
+    for (const double left_m : {0.0, 0.002, 0.03, 0.05}) {
+      EyesAndHead gaze(Vector3d::UnitX());
+      const auto way = [&](int tick) { return Vector3d(1 - tick / 480.0, left_m, up_m + 1e-9); };
+      EXPECT_LE(FastestOf(gaze, way, 1440), 600 * std::sqrt(2) + 0.1) << up_m << " " << left_m;
+      EXPECT_GT(gaze.eyes_W().dot(way(1440).normalized()), 0.999);
+    }
+  }
+}
+
+TEST(GazeTest, AHeadKeepsItsYawStraightAboveAThing) {
+  EyesAndHead gaze(Vector3d::UnitY());
+  const auto below = [](int tick) { return Vector3d(1e-3 * (tick % 2), -1e-3, -1); };
+  FastestOf(gaze, below, 960);
+  EXPECT_NEAR(gaze.head_W().x(), 0, 1e-3);
+  EXPECT_GT(gaze.head_W().y(), 0.1);
 }
 
 /// First tick at which she sees this body; -1: never.
