@@ -407,6 +407,7 @@ PYBIND11_MODULE(_prehend, m) {
       .def(py::init<const Grammar&, const std::string&>())
       .def("entities", [](const LiveMonitor& one) { return ToPython(one.monitor().entities()); })
       .def("warnings", [](const LiveMonitor& one) { return one.monitor().warnings(); })
+      .def("moved", [](const LiveMonitor& one) { return one.monitor().moved(); })
       .def("take", &LiveMonitor::Take)
       .def("finish", &LiveMonitor::Finish);
   m.def("syntax", &Syntax);

@@ -299,7 +299,7 @@ class Monitor:
         Parameters
         ----------
         t : float
-            Seconds, more than before.
+            Seconds, more than before. What begins before 0 counts from its first frame, and a warning says so.
         poses : dict
             By entity (x, y, z) or (x, y, z, qw, qx, qy, qz) in metres; None or NaN: not tracked; or a
             dict as a sample of docs/recording-format.md. What is not mentioned stays where it was.
@@ -332,7 +332,9 @@ class Monitor:
         line = {"tick": tick, "samples": samples,
                 "hands": {hand: grip if isinstance(grip, dict) else {"trigger": grip} for hand, grip in frames.by_name(grips, "grips").items()},
                 "touches": [self._touch(one) for one in touches]}
+        warned = self._monitor.warnings()
         found = self._monitor.take(frames.to_json(line))
+        warn(self._monitor.warnings()[len(warned):])
         self._last, self._t = tick, t
         for at in (pose["at_m"] for pose in samples.values() if pose and "at_m" in pose):
             self._near = list(at) if self._near is None else self._near
@@ -345,7 +347,7 @@ class Monitor:
         """The episode ends at t seconds, by default with the last frame: events that were open, as `update` tells them."""
         end = (self._last or 0) + 1 if t is None else self._tick(t)
         told = self._told(self._monitor.finish(end))
-        self._end = end
+        self._end = end + self._monitor.moved()
         return told
 
     def events(self, told: list) -> "events.Events":
@@ -355,7 +357,7 @@ class Monitor:
             if missing := [key for key in ("event", *last) if not isinstance(one, dict) or key not in one]:
                 fail(Error, f"told: found {'one without ' + missing[0] if isinstance(one, dict) else type(one).__name__} at {number_}, wanted "
                      "dicts", "a list of what update() and finish() told")
-        end = self._end or (self._last or 0) + 1
+        end = self._end or (self._last or 0) + 1 + self._monitor.moved()
         episode = _prehend.episode_of(self._line, np.zeros(1, dtype=np.int64), [], [], np.zeros((0, 3), dtype=np.int64),
                                       np.zeros(0), end)
         if not told:

@@ -69,6 +69,37 @@ class Live(unittest.TestCase):
         self.assertEqual([[one.get(name, "") for name in names] for one in sorted(told, key=key)],
                          [[one[name] for name in names] for one in sorted(found.to_dict("records"), key=key)])
 
+    def test_what_begins_before_0_counts_from_its_first_frame_as_segment_has_it(self):
+        t, arrays = takes.carried(6)
+        grammar = prehend.Grammar("pick_and_place_from_motion")
+        found = grammar.segment(arrays, t=t, entities=takes.ENTITIES)
+        with self.assertWarnsRegex(prehend.MissingFacts, "begins at -3 s: times count from its first frame\n  hint: .* offset_s: 3 "):
+            moved = grammar.segment(arrays, t=t - 3, entities=takes.ENTITIES)
+        pd.testing.assert_frame_equal(pd.DataFrame(moved), pd.DataFrame(found))
+        monitor = grammar.monitor(takes.ENTITIES, ticks_per_second=found._source.episode.ticks_per_second())
+        with self.assertWarnsRegex(prehend.MissingFacts, "'live' begins at -3 s: times count from its first frame"):
+            told = monitor.update(-3, {one: at[0] for one, at in arrays.items()})
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", prehend.MissingFacts)  # it is said once
+            for i in range(1, len(t)):
+                told += monitor.update(t[i] - 3, {one: at[i] for one, at in arrays.items()})
+        told += monitor.finish()
+        key = ["begin_s", "end_s", "event", "a", "b"]
+        watched = monitor.events(told)
+        self.assertEqual(watched._source.end, found._source.end)
+        same = ["event", "hand", "object", "begin_s", "end_s", "decided_s", "open_end"]
+        self.assertEqual(watched.sort_values(key)[same].values.tolist(), found.sort_values(key)[same].values.tolist())
+        with tempfile.TemporaryDirectory() as folder:
+            for ending in ("eaf", "TextGrid"):
+                texts = []
+                for number, one in enumerate((watched, found)):
+                    one.write(f"{folder}/{number}/labels.{ending}")
+                    with open(f"{folder}/{number}/labels.{ending}", encoding="utf-8") as file:
+                        texts.append(sorted(file.read().splitlines()))
+                self.assertNotRegex("\n".join(texts[0]), r'(VALUE="|= )-')
+            watched.write(f"{folder}/new/labels.json")  # makes its folder, as for the others
+        self.assertEqual(monitor._monitor.moved(), 3 * monitor._per_second)
+
     def test_what_it_told_is_events(self):
         t, arrays = takes.carried(6)
         grammar = prehend.Grammar("pick_and_place_from_motion")

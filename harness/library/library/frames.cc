@@ -133,6 +133,7 @@ struct Monitor::State {
   std::shared_ptr<const grammar::Program> program;
   std::string warnings;
   std::unique_ptr<grammar::Monitor> monitor;
+  std::optional<grammar::Tick> moved;  ///< since the first frame
   bool is_finished = false;
 
   grammar::Timeline Named(const std::vector<grammar::Event>& events) const {
@@ -154,14 +155,22 @@ const grammar::EntityTable& Monitor::entities() const {
   return state_->stream.header().entity_table;
 }
 const std::string& Monitor::warnings() const { return state_->warnings; }
+grammar::Tick Monitor::moved() const { return state_->moved.value_or(0); }
 
 grammar::Timeline Monitor::Take(const std::string& line) {
   if (state_->is_finished)
     Refuse(kFrames, "the episode is finished", "make another monitor for another episode");
   Check(state_->stream.Take(line));
   std::vector<grammar::Event> events;
-  if (episode::EpisodeFrame* frame = state_->stream.frame())
-    state_->monitor->Advance(frame->View(), events);
+  if (episode::EpisodeFrame* frame = state_->stream.frame()) {
+    if (!state_->moved) {
+      state_->moved = episode::MovedBy(frame->tick);
+      state_->warnings += episode::MovedText(state_->stream.header(), *state_->moved);
+    }
+    grammar::Frame moved = frame->View();
+    moved.tick += *state_->moved;
+    state_->monitor->Advance(moved, events);
+  }
   return state_->Named(events);
 }
 
@@ -171,7 +180,7 @@ grammar::Timeline Monitor::Finish(grammar::Tick end) {
     Refuse(kFrames, fmt::format("the episode ends at tick {}, before its last frame", end));
   state_->is_finished = true;
   std::vector<grammar::Event> events;
-  state_->monitor->Finish(end, events);
+  state_->monitor->Finish(end + moved(), events);
   return state_->Named(events);
 }
 

@@ -55,8 +55,11 @@ class PREHEND_API Monitor {
   ~Monitor();
 
   const grammar::EntityTable& entities() const;
-  /// Names in the grammar that nothing in the entities has: lines for people.
+  /// Lines for people: names in the grammar that nothing in the entities has; and behind them,
+  /// after a first frame before 0, that times count from it.
   const std::string& warnings() const;
+  /// So many ticks later than in the lines are the events, as the first frame is before 0.
+  grammar::Tick moved() const;
   /// A line; returns the events that became certain with it. After an error, it is as if the line
   /// had not been given.
   grammar::Timeline Take(const std::string& line);
