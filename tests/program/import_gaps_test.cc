@@ -52,7 +52,7 @@ TEST(ImportGaps, ASupportEndsWhereTheThingIsLost) {
             "supported_by  0.00000  1.30010  object=cup  support=table\n"
             "contact       3.60000  6.00010  a=cup       b=table        open_end\n"
             "supported_by  3.60000  6.00010  object=cup  support=table  open_end\n"
-            "completed: 6.00000 s, 60000 ticks\n");
+            "completed: 6.00010 s, 60001 ticks\n");
 }
 
 TEST(ImportGaps, WhatIsHeldNeedsNoSuchFrame) {

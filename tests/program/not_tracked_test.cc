@@ -130,7 +130,7 @@ TEST_F(NotTracked, WhatALongGapLeavesUnknownEndsAndNeitherDoesItsOppositeHold) {
             "moving  0.0200   0.9000  cup=cup\n"
             "near    1.2000   2.0000  hand=hand  cup=cup  open_end\n"
             "moving  1.2200   2.0000  cup=cup             open_end\n"
-            "completed: 1.9990 s, 1999 ticks\n");
+            "completed: 2.0000 s, 2000 ticks\n");
   EXPECT_EQ(
       said.err,
       "warning: 'cup' is not tracked in 1 gap: 0.100 s are bridged, in 0.300 s it is unknown\n"

@@ -268,11 +268,11 @@ TEST(Recording, WithoutItsLastLineItIsUnfinished) {
   const std::string whole = ReadFile(file);
   const auto cut = folder / "cut.jsonl";
   WriteFile(cut, whole.substr(0, whole.rfind("{\"end_tick\"")));
-  EXPECT_NE(Prehend({"episode", "resegment", file}).out.find("\ncompleted: 5.1500 s, 2472 ticks\n"),
+  EXPECT_NE(Prehend({"episode", "resegment", file}).out.find("\ncompleted: 5.1521 s, 2473 ticks\n"),
             std::string::npos);
   const Said open = Prehend({"episode", "resegment", cut.string()});
   EXPECT_NE(
-      open.out.find("\nunfinished: 5.1500 s, 2472 ticks; the recording does not say that it ended "
+      open.out.find("\nunfinished: 5.1521 s, 2473 ticks; the recording does not say that it ended "
                     "here\n"),
       std::string::npos)
       << open.out;

@@ -104,6 +104,7 @@ RunResult Episode::RunOf(SegmentedRecording segmented, bool frames) {
   RunResult run;
   run.status.kind = physics::RunStatus::Kind::kCompleted;
   run.ticks = recording_->end_tick - 1;
+  run.is_recording = true;
   run.is_unfinished = !recording_->says_its_end;
   missing_ = std::move(segmented.missing);
   run.timeline = std::move(segmented.timeline);
@@ -311,8 +312,8 @@ Result<Episode> OpenEpisode(const EpisodeName& name, const GrammarChoice& choice
 }
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunHeading, name, skill, grammar, notes)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunResult, status, ticks, is_unfinished, state_hash, timeline,
-                                   outcome)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunResult, status, ticks, is_recording, is_unfinished,
+                                   state_hash, timeline, outcome)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Resegmented, heading, run, differences, warnings, problem,
                                    nothing_left, finished)
 

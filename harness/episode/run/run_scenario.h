@@ -38,7 +38,8 @@ struct RunResult {
   ~RunResult();
 
   physics::RunStatus status;
-  grammar::Tick ticks = 0;
+  grammar::Tick ticks = 0;     ///< the last one: as many updates of the physics
+  bool is_recording = false;   ///< nothing was played: it lasts until its end, a tick more
   bool is_unfinished = false;  ///< nobody says that it ended here: a recording without 'end_tick'
   std::uint64_t state_hash = 0;
   grammar::Timeline timeline;                ///< what was recognised up to the end of the run

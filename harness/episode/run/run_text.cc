@@ -20,6 +20,9 @@ bool Completed(const RunResult& run) {
   return run.status.kind == physics::RunStatus::Kind::kCompleted;
 }
 
+/// Of a recording up to its end, as its 'end_tick' and the events that are open there say.
+Tick LengthOf(const RunResult& run) { return run.ticks + (run.is_recording ? 1 : 0); }
+
 }  // namespace
 
 std::string StatusText(const RunResult& run) {
@@ -27,7 +30,7 @@ std::string StatusText(const RunResult& run) {
   const Tick rate = run.timeline.ticks_per_second;
   if (Completed(run))
     return fmt::format("{}: {} s, {} ticks{}", run.is_unfinished ? "unfinished" : "completed",
-                       truth::SecondsText(run.ticks, rate), run.ticks,
+                       truth::SecondsText(LengthOf(run), rate), LengthOf(run),
                        run.is_unfinished ? "; the recording does not say that it ended here" : "");
   std::string text =
       fmt::format("failed at {} s (tick {}): ", truth::SecondsText(status.tick, rate), status.tick);
@@ -81,7 +84,7 @@ OrderedJson RunJson(const RunHeading& heading, const RunResult& run) {
                                  : run.is_unfinished ? "unfinished"
                                                      : "completed"},
                       {"ticks_per_second", run.timeline.ticks_per_second},
-                      {"ticks", run.ticks},
+                      {"ticks", LengthOf(run)},
                       {"state_hash", HashText(run.state_hash)},
                       {"grammar", heading.grammar}};
   if (!Completed(run)) {
