@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <tuple>
 
 #include "grammar/base/diagnostic.h"
 #include "grammar/base/quantity.h"
@@ -66,6 +67,23 @@ std::vector<std::size_t> StepsToWorse(const std::vector<Axis>& axes,
     }
     front = std::move(next);
   }
+  return steps;
+}
+
+/// The same along each axis alone, the least of these first: larger towards the middle.
+std::vector<std::size_t> StepsAlongAxes(const std::vector<Axis>& axes,
+                                        const std::vector<bool>& good, std::size_t point) {
+  std::vector<std::size_t> steps;
+  std::size_t stride = 1;
+  for (std::size_t i = axes.size(); i-- > 0;) {
+    const std::size_t count = axes[i].values.size(), at = point / stride % count;
+    std::size_t down = 1, up = 1;
+    while (down <= at && good[point - down * stride]) ++down;
+    while (at + up < count && good[point + up * stride]) ++up;
+    steps.push_back(std::min(down, up));
+    stride *= count;
+  }
+  std::ranges::sort(steps);
   return steps;
 }
 
@@ -169,7 +187,9 @@ RobustSettings FindRobustSettings(const std::vector<Axis>& axes,
   bool chosen = false;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!good[i]) continue;
-    const auto rank = [&](std::size_t p) { return std::pair(steps[p], points[p].f1); };
+    const auto rank = [&](std::size_t p) {
+      return std::tuple(steps[p], StepsAlongAxes(axes, good, p), points[p].f1);
+    };
     if (!chosen || rank(i) > rank(robust.chosen)) robust.chosen = i;
     chosen = true;
   }

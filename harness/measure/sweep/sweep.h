@@ -80,7 +80,7 @@ struct SweepResult {
   int episodes = 0;
   std::string grammar;                ///< its name
   std::string measure;                ///< "F1@50: .." for people
-  std::string label_warning;          ///< of labels that were left out, or ""
+  std::string label_warning;          ///< of labels that were left out, and clocks; or ""
   std::string counted;                ///< labels: lines for people, or ""
   std::vector<std::string> left_out;  ///< "SCENARIO: why"
   std::vector<std::string> unread;    ///< of these, what cannot be read
@@ -160,9 +160,10 @@ std::string MarginsCsv(const Margins& margins);
 // tests/harness/measure/sweep/robust_settings_test.cc
 
 /// The settings whose score is within a distance of the best, and that hang together with the
-/// chosen one: of all such settings the one that is farthest from any worse one, and from the
-/// border of what was tried; of equals the best, then the first. Without members if no setting has
-/// a score above 0.
+/// chosen one: of all such settings the one that is farthest, in steps, from any worse one and from
+/// what was not tried, which may be worse, too; of equals the one that is so along each axis alone,
+/// the nearest first, and so in the middle; then the best, then the first. Without members if no
+/// setting has a score above 0.
 struct RobustSettings {
   double best = 0;
   std::size_t chosen = 0;            ///< index of a point

@@ -101,6 +101,25 @@ TEST(SweepRobustSettings, OfTwoParametersHangsTogether) {
   EXPECT_EQ(std::count(svg.begin(), svg.end(), '\n') > 50, true);
 }
 
+TEST(SweepRobustSettings, TheMiddleOfAPlateauIsChosen) {
+  const auto chosen = [](int rows, int columns, std::vector<double> scores) {
+    const std::vector<Axis> axes = {AxisOf("x=0..8:" + std::to_string(rows)),
+                                    AxisOf("y=0..8:" + std::to_string(columns))};
+    scores.resize(static_cast<std::size_t>(rows * columns), 1);
+    const RobustSettings robust = FindRobustSettings(axes, Points(axes, scores), 0.01);
+    return std::pair(robust.chosen, robust.steps);
+  };
+  using Chosen = std::pair<std::size_t, std::size_t>;
+  EXPECT_EQ(chosen(5, 5, {}), Chosen(12, 3));
+  EXPECT_EQ(chosen(3, 9, {}), Chosen(13, 2)) << "all of 10 to 16 are 2 steps from the border";
+  EXPECT_EQ(chosen(9, 3, {}), Chosen(13, 2));
+  EXPECT_EQ(chosen(2, 5, {}), Chosen(2, 1)) << "each setting is at the border";
+  EXPECT_EQ(chosen(2, 5, {1, 0.995}), Chosen(2, 1)) << "the middle of what is as good";
+  EXPECT_EQ(chosen(3, 9, {1, 1, 1, 1,   1, 1, 1, 1, 0.5, 1, 1, 1, 1,  1,
+                          1, 1, 1, 0.5, 1, 1, 1, 1, 1,   1, 1, 1, 0.5}),
+            Chosen(12, 2));
+}
+
 TEST(SweepRobustSettings, AtAnEdgeIsAWarning) {
   const std::vector<Axis> axes = {AxisOf("x=0..4:5"), AxisOf("y=1cm..3cm:3")};
   const auto points = Points(axes, {0, 0, 0,  //
