@@ -83,9 +83,20 @@ TEST(Recording, WhatBeginsBeforeZeroIsCountedFromItsFirstFrame) {
     EXPECT_EQ(scored.err, said);
     EXPECT_EQ(nlohmann::json::parse(scored.out)["grammars"][0]["total"]["f1_50"], 1) << ending;
   }
+  EXPECT_EQ(Prehend({"grammar", "margins", file("before_0.jsonl"), "--truth", file("labels.csv"),
+                     "--over", "reach_radius"})
+                .err,
+            said);
+  const auto page = file("page.html");
+  EXPECT_EQ(Prehend({"report", file("before_0.jsonl"), "-o", page}).err, said);
+  EXPECT_EQ(Prehend({"episode", "query", file("before_0.jsonl"), "--event", "grasping"}).err, said);
+  EXPECT_EQ(Prehend({"episode", "knowledge", file("before_0.jsonl"), "-o", file("knowledge")}).err,
+            said);
   ASSERT_EQ(Prehend({"accept", file("before_0.jsonl"), "--reason", "a test"}, {"CI="}).exit_code,
             0);
   EXPECT_EQ(Prehend({"check", file("before_0.jsonl")}).exit_code, 0);
+  EXPECT_EQ(Prehend({"report", file("before_0.jsonl"), "-o", page}).err, said);
+  EXPECT_NE(ReadFile(page).find("times count from its first frame"), std::string::npos);
   const Said kept = Prehend({"import", file("before_0.jsonl"), "-o", file("all.episodes")});
   EXPECT_EQ(kept.err, said);
   EXPECT_EQ(events(file("all.episodes")), events(file("from_0.jsonl")));

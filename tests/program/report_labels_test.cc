@@ -122,6 +122,22 @@ TEST_F(ReportLabels, LabelsMayNameSomeRoles) {
   EXPECT_TRUE(Has(wrong.err, "wanted grasping(hand, object)")) << wrong.err;
 }
 
+TEST_F(ReportLabels, AGrammarThatIsAskedForStandsInForAnUnknownOne) {
+  const std::vector<std::string> truth = {"--truth", docs_ + "/labels.csv", "--map",
+                                          docs_ + "/labels.yaml"};
+  WriteFile(folder_ / "milk.jsonl",
+            Replaced(ReadFile(folder_ / "milk.jsonl"), R"("grammar":"pick_and_place_from_motion")",
+                     R"("grammar":"of_somebody_else")"));
+  const Said unknown = Report(truth);
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_TRUE(Has(unknown.err, "no grammar is called 'of_somebody_else'")) << unknown.err;
+  std::vector<std::string> asked = truth;
+  asked.insert(asked.end(), {"--grammar", "pick_and_place_from_motion"});
+  const Said said = Report(asked);
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_TRUE(Has(said.out, "page.html: 1 take, ")) << said.out;
+}
+
 TEST_F(ReportLabels, RefusesWhatIsNotLabelled) {
   EXPECT_EQ(Report({"--map", docs_ + "/labels.yaml"}).exit_code, 2);
   EXPECT_EQ(Report({"--truth", Path("none.csv")}).exit_code, 2);

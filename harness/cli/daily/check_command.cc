@@ -183,8 +183,10 @@ void PrintText(const std::vector<suite::ScenarioVerdict>& verdicts, const TextOp
     context.out << fmt::format("  {}{}{}\n", verdict.scenario, note.empty() ? "" : "  ", note);
     if (brief && verdict.exit_code != ExitCode::kAgrees) continue;
     context.out << Indented(suite::NotesText(verdict));
-    context.out << Indented(DetailsText(verdict));  // of what passed: claims that were not judged
-    if (verdict.exit_code == ExitCode::kAgrees) continue;
+    const bool is_good = verdict.exit_code == ExitCode::kAgrees;
+    context.out << Indented(is_good ? verdict.details  // claims that were not judged
+                                    : DetailsText(verdict));
+    if (is_good) continue;
     context.out << "    " << suite::CommandLabel(verdict) << ": " << verdict.command << "\n";
   }
   const suite::Tally tally = suite::Count(verdicts);

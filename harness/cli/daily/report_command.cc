@@ -255,10 +255,10 @@ ExitCode ReportSides(std::vector<episode::Take> takes, const std::string& page,
   context.err << scores->failures;
   // A recording is replayed from an episode file.
   episode::EpisodeKeeper keeper(context.root, context.today);
-  const auto kept = keeper.KeepAll(episode::EpisodesOf(request.takes));
+  const std::string whose = request.asking.WhoseEvents();
+  const auto kept = keeper.KeepAll(episode::EpisodesOf(request.takes), whose);
   if (!kept) return Complain(context, kept.error());
-  std::vector<suite::ScenarioVerdict> verdicts =
-      VerdictsOf(*kept, request.asking.WhoseEvents(), false, options, context);
+  std::vector<suite::ScenarioVerdict> verdicts = VerdictsOf(*kept, whose, false, options, context);
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
     verdicts[i].scenario = request.takes[i].episode.scenario;
     verdicts[i].file = keeper.SourceOf(verdicts[i].file);
@@ -302,6 +302,7 @@ ExitCode RunReport(const ParsedOptions& options, const CommandContext& context) 
   if (options.Has("--map")) return Refuse(context, "--map needs --truth: where are the labels?");
   std::vector<suite::ScenarioVerdict> verdicts =
       VerdictsOf(episode::EpisodesOf(takes), options.Text("--grammar"), true, options, context);
+  for (const suite::ScenarioVerdict& verdict : verdicts) context.err << verdict.warnings;
   suite::ReportHeader header =
       suite::HeaderOf(CommandText(context.words), context.root, context.today);
   header.title = "Recorded episodes";

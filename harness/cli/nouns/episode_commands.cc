@@ -381,8 +381,10 @@ ExitCode RunKnowledge(const ParsedOptions& options, const CommandContext& contex
   if (!unfinished.problem().empty())
     return Complain(context, ExitCode::kFailure, unfinished.problem());
   const std::string made = unfinished.path().string();
-  const auto kept = episode::EpisodeKeeper(context.root, context.today, made).KeepAll(episodes);
+  episode::EpisodeKeeper keeper(context.root, context.today, made);
+  const auto kept = keeper.KeepAll(episodes);
   if (!kept) return Complain(context, kept.error());
+  context.err << keeper.warnings();
   const Result<exchange::KnowledgeWritten> written =
       exchange::WriteKnowledge(*kept, {.root = context.root,
                                        .folder = folder,

@@ -293,6 +293,7 @@ ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
     if (!found) return Complain(context, found.error());
     answers.insert(answers.end(), found->begin(), found->end());
   }
+  context.err << keeper.warnings();
   if (const std::string why = UnknownRole(question, known.roles); !why.empty())
     return Refuse(context, why);
   if (const std::string why = UnknownColumn(columns, known.roles); !why.empty())

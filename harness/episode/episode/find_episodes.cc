@@ -70,9 +70,10 @@ grammar::Diagnostics Record(RecordRequest request) {
   return {{.file = request.file, .message = recorder.problem()}};
 }
 
-grammar::Diagnostics Import(const ImportRequest& request) {
+grammar::Diagnostics Import(const ImportRequest& request, std::string& warnings) {
   PREHEND_TRY(Recording recording, ReadRecording(request.source));
   PREHEND_TRY(const auto imported, ImportRecording(request, recording));
+  warnings += imported.segmented.missing.warnings;
   if (imported.problem.empty()) return {};
   return {{.file = request.file, .message = imported.problem}};
 }
@@ -257,7 +258,7 @@ EpisodeKeeper::EpisodeKeeper(std::string root, std::string today, std::string fo
       today_(std::move(today)),
       folder_(folder.empty() ? temporary_.path().string() : std::move(folder)) {}
 
-Result<EpisodeName> EpisodeKeeper::Keep(const EpisodeName& episode) {
+Result<EpisodeName> EpisodeKeeper::Keep(const EpisodeName& episode, const std::string& grammar) {
   if (episode.number) return episode;
   std::string name = episode.scenario;
   std::ranges::replace(name, '/', '_');
@@ -268,16 +269,17 @@ Result<EpisodeName> EpisodeKeeper::Keep(const EpisodeName& episode) {
   sources_[file] = episode.origin == Origin::kScenario ? episode.scenario : episode.file;
   grammar::Diagnostics problems =
       episode.origin == Origin::kRecording
-          ? Import({file, root_, episode.file, "", today_, ProgramHash()})
+          ? Import({file, root_, episode.file, grammar, today_, ProgramHash()}, warnings_)
           : Record({file, root_, {.scenario_file = episode.file}, {}, today_, ProgramHash()});
   if (!problems.empty()) return tl::unexpected(std::move(problems));
   PREHEND_TRY(std::vector<EpisodeName> kept, EpisodesOf(file));
   return std::move(kept.front());
 }
 
-Result<std::vector<EpisodeName>> EpisodeKeeper::KeepAll(std::vector<EpisodeName> episodes) {
+Result<std::vector<EpisodeName>> EpisodeKeeper::KeepAll(std::vector<EpisodeName> episodes,
+                                                        const std::string& grammar) {
   for (EpisodeName& episode : episodes) {
-    PREHEND_TRY(episode, Keep(episode));
+    PREHEND_TRY(episode, Keep(episode, grammar));
   }
   return episodes;
 }

@@ -60,15 +60,18 @@ class EpisodeKeeper {
   /// at the end.
   EpisodeKeeper(std::string root, std::string today, std::string folder = "");
 
-  /// The same episode in a file.
-  Result<EpisodeName> Keep(const EpisodeName& episode);
-  Result<std::vector<EpisodeName>> KeepAll(std::vector<EpisodeName> episodes);
+  /// The same episode in a file. `grammar` segments a recording; "": its own.
+  Result<EpisodeName> Keep(const EpisodeName& episode, const std::string& grammar = "");
+  Result<std::vector<EpisodeName>> KeepAll(std::vector<EpisodeName> episodes,
+                                           const std::string& grammar = "");
+  /// What the recordings do not have of what their grammars ask for, and what was moved: lines.
+  const std::string& warnings() const { return warnings_; }
   /// Of a file that was made here, the scenario or recording in it; any other is as it is.
   std::string SourceOf(const std::string& file) const;
 
  private:
   TemporaryFolder temporary_;
-  std::string root_, today_, folder_;
+  std::string root_, today_, folder_, warnings_;
   std::map<std::string, std::string> sources_;
 };
 

@@ -39,11 +39,12 @@ struct JudgedSettings {
   std::vector<JudgedSetting> settings;
   std::string left_out;
   bool is_unread = false;  ///< it is left out since it cannot be read
+  std::string moved;       ///< a warning for who has labels by its own clock, or ""
 };
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedSetting, correct, extra, missed, begin_ms, end_ms,
                                    latency_ms)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedSettings, settings, left_out, is_unread)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedSettings, settings, left_out, is_unread, moved)
 
 namespace {
 using Programs = std::vector<std::shared_ptr<const grammar::Program>>;
@@ -195,6 +196,8 @@ JudgedSettings JudgedEpisode(const episode::EpisodeName& name, std::size_t index
   }
   if (!truth) return LeftOut(truth.error());
   JudgedSettings judged;
+  if (const auto* recording = episode->recording(); labels && recording)
+    judged.moved = episode::MovedText(recording->header, recording->moved);
   for (const auto& program : programs) {
     Result<grammar::Timeline> found = episode->Segment(program);
     if (!found) return LeftOut(grammar::Format(found.error().front()), true);
@@ -346,6 +349,7 @@ Result<SweepResult> Sweep(const std::vector<episode::Take>& takes, const SweepRe
         continue;
       }
       ++result.episodes;
+      result.label_warning += one.moved;
       for (std::size_t p = 0; p < programs.size(); ++p) {
         const JudgedSetting& judged = one.settings[p];
         SweepPoint& point = result.points[p];

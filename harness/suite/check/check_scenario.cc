@@ -176,7 +176,7 @@ Findings GoldenBesideRecording(CheckedEpisode& checked) {
     findings.push_back(
         {ExitCode::kBadInput, "the golden is of another grammar", OtherGrammarText(*judged)});
   }
-  if (!findings.empty()) findings.back().details += judged->segmented.missing.warnings;
+  verdict.warnings = std::move(judged->segmented.missing.warnings);
   std::ranges::move(JudgeLaws(judged->segmented), std::back_inserter(findings));
   if (verdict.has_golden)
     verdict.attributions =
@@ -436,7 +436,8 @@ ScenarioVerdict VerdictOn(CheckedEpisode checked) {
   const bool differs = verdict.verdict == Verdict::kFailed || !verdict.picture_differences.empty();
   if (differs && verdict.attributions.empty() && is_run)
     AttributeFailure(request, checked.run, verdict);
-  for (std::string* text : {&verdict.reason, &verdict.details}) Shorten(*text, request.root);
+  for (std::string* text : {&verdict.reason, &verdict.details, &verdict.warnings})
+    Shorten(*text, request.root);
   verdict.details += truth::TextOfUndecided(verdict.claims);
   if (is_run && checked.IsComplete()) Store(checked);
   verdict.command = NextCommand(checked);

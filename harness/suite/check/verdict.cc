@@ -116,7 +116,7 @@ FirstPlace WhereToLook(const ScenarioVerdict& verdict) {
 }
 
 std::string DetailsText(const ScenarioVerdict& verdict) {
-  return Format(verdict.errors) + verdict.details;
+  return Format(verdict.errors) + verdict.details + verdict.warnings;
 }
 
 namespace {
@@ -229,11 +229,11 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Handling, event, hand, object, support, begin
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Demonstration, success, ticks_per_second, end, handled, mishaps)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Attribution, event, what, shift_ms, because, question)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScenarioVerdict, scenario, file, shows, verdict, exit_code,
-                                   reason, errors, details, notes, claims, comparison, has_golden,
-                                   drawings, explain, cause, attributions, settings, command,
-                                   state_hash, ticks, seconds, peak_memory_kib, inputs, pictures,
-                                   not_recorded, picture_differences, drawn_differences, explained,
-                                   demonstration, replay, steps)
+                                   reason, errors, details, warnings, notes, claims, comparison,
+                                   has_golden, drawings, explain, cause, attributions, settings,
+                                   command, state_hash, ticks, seconds, peak_memory_kib, inputs,
+                                   pictures, not_recorded, picture_differences, drawn_differences,
+                                   explained, demonstration, replay, steps)
 
 namespace {
 

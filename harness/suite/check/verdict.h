@@ -70,6 +70,7 @@ struct ScenarioVerdict {
   std::string reason;                       ///< one line; empty when passed
   grammar::Diagnostics errors;              ///< of its input
   std::string details;                      ///< differences, violations; several lines or empty
+  std::string warnings;                     ///< of a recording: MissingFacts::warnings
   std::vector<std::string> notes;           ///< NoteLines(): steps that did not do what they say
   std::vector<truth::ClaimVerdict> claims;  ///< of a run that completed
   std::optional<truth::Comparison>
