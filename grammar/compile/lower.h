@@ -175,7 +175,7 @@ class Lowering {
   Typed JudgeChain(const ast::Expr& chain, const std::vector<Typed>& parts);
   std::optional<Diagnostic> Contradiction(const ast::Expr& chain,
                                           const std::vector<Typed>& parts) const;
-  Typed Decided(Verdict verdict, std::vector<int> because);
+  Typed Decided(NodeId node, Verdict verdict) const;
   void NoteVacuous(Place place, std::string message, std::string hint, bool is_handed_in);
   NodeId Settled(const Typed& clause);
   void Warn(Diagnostic warning);

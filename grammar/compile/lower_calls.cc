@@ -302,17 +302,17 @@ Lowering::Typed Lowering::LowerIs(const Expr& expr) {
                                WithArticle(expr.args[1].text));
   }
   NoteClass(symbols_.program, expr.args[1].text, source_->file, expr.args[1].place);
+  symbols_.program.class_names.push_back(expr.args[1].text);
+  const int slot = static_cast<int>(symbols_.program.class_names.size()) - 1;
+  const NodeId node = Add({.op = Op::kIsA, .roles = {*role, kNone}, .slot = slot});
   if (scope_ == nullptr && !checking_ && ClassImplies(class_name, expr.args[1].text)) {
     NoteVacuous(
         expr.place,
         "this is always true: " + Quoted(expr.args[0].text) + " is " + WithArticle(class_name),
         "leave it out", false);
-    return Decided(Verdict::kAlways, {static_cast<int>(vacuous_parts_.size()) - 1});
+    return Decided(node, Verdict::kAlways);
   }
-  symbols_.program.class_names.push_back(expr.args[1].text);
-  const int slot = static_cast<int>(symbols_.program.class_names.size()) - 1;
-  return {.node = Add({.op = Op::kIsA, .roles = {*role, kNone}, .slot = slot}),
-          .type = Type::kTruth};
+  return {.node = node, .type = Type::kTruth};
 }
 
 Lowering::Typed Lowering::TwiceTheSame(const Expr& role, std::string_view callee) {

@@ -33,10 +33,9 @@ Lowering::Typed Lowering::LowerComparison(Op op, const Typed& left, const Typed&
   const bool same = Signature(program, rule(), left.node) == Signature(program, rule(), right.node);
   const Verdict verdict = same ? Judge(op, {.low = 0, .high = 0}, {.low = 0, .high = 0})
                                : Judge(op, of_left, RangeOf(program, rule(), right.node));
-  if (verdict == Verdict::kPossible || checking_) {
-    return {.node = Add({.op = op, .args = {left.node, right.node, kNone, kNone}}),
-            .type = Type::kTruth};
-  }
+  // Compared it is in any case: where a side has no value, it is unknown.
+  const NodeId node = Add({.op = op, .args = {left.node, right.node, kNone, kNone}});
+  if (verdict == Verdict::kPossible || checking_) return {.node = node, .type = Type::kTruth};
   const bool never = verdict == Verdict::kNever;
   const std::string message = std::string("this is ") + (never ? "never" : "always") + " true: ";
   const std::string sides = WhatSidesCanBe(expr, left, right);
@@ -49,26 +48,31 @@ Lowering::Typed Lowering::LowerComparison(Op op, const Typed& left, const Typed&
   } else {
     NoteVacuous(expr.place, message + sides,
                 WithParams(expr, never ? "choose a bound that can be reached"
-                                       : "leave it out, or choose a bound that can be missed"),
+                                       : "leave it out, or choose a bound that can be missed; "
+                                         "'known ..' asks whether there is a value"),
                 is_handed_in);
   }
-  return Decided(verdict, {static_cast<int>(vacuous_parts_.size()) - 1});
+  return Decided(node, verdict);
 }
 
-// What is so whatever happens.
-Lowering::Typed Lowering::Decided(Verdict verdict, std::vector<int> because) {
-  const NodeId zero = Add({.op = Op::kNumber});
-  const Op op = verdict == Verdict::kAlways ? Op::kEqual : Op::kNotEqual;
-  return {.node = Add({.op = op, .args = {zero, zero, kNone, kNone}}),
+// What is so whatever happens, for the reason that was noted last.
+Lowering::Typed Lowering::Decided(NodeId node, Verdict verdict) const {
+  return {.node = node,
           .type = Type::kTruth,
           .verdict = verdict,
-          .because = std::move(because)};
+          .because = {static_cast<int>(vacuous_parts_.size()) - 1}};
 }
 
 Lowering::Typed Lowering::LowerNot(const Expr& expr) {
+  const std::size_t noted = vacuous_parts_.size();
   Typed arg = TruthValue(expr.args[0]);
   if (arg.bad) return arg;
   if (expr.text == "known") {
+    if (arg.verdict == Verdict::kAlways) {  // it asks whether there is a value
+      vacuous_parts_.erase(vacuous_parts_.begin() + static_cast<std::ptrdiff_t>(noted),
+                           vacuous_parts_.end());
+      arg.verdict = Verdict::kPossible;
+    }
     arg.node = Add({.op = Op::kKnown, .args = {arg.node, kNone, kNone, kNone}});
     return arg;
   }

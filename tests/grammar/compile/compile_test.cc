@@ -104,11 +104,13 @@ TEST(Compile, WarnsOfWhatSaysNothingButMayBeMeant) {
       "g:4:67: warning: this is always true: 'speed' is never below 0 m/s\n"
       "  event a(x: Movable, y: Movable) while touching(x, y) and speed(x) >= 0 m/s\n"
       "                                                                    ^\n"
-      "  hint: leave it out, or choose a bound that can be missed\n"
+      "  hint: leave it out, or choose a bound that can be missed; 'known ..' asks whether there "
+      "is a value\n"
       "g:3:45: warning: this is always true: 'speed' is never below 0 m/s\n"
       "  define fast(x: Movable, v: cm/s) = speed(x) >= v\n"
       "                                              ^\n"
-      "  hint: 'v' is 0 m/s here; leave it out, or choose a bound that can be missed\n";
+      "  hint: 'v' is 0 m/s here; leave it out, or choose a bound that can be missed; 'known ..' "
+      "asks whether there is a value\n";
   const CompileResult plain = CompileText(text);
   EXPECT_TRUE(plain.program) << Format(plain.diagnostics);
   EXPECT_EQ(Format(plain.warnings), by_itself);

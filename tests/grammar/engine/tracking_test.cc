@@ -96,6 +96,25 @@ TEST(NotTracked, NeitherAConditionNorItsOppositeHolds) {
     EXPECT_EQ(Held(While(condition), {Scene::kCup}), "0..300; 500..1000; ") << condition;
 }
 
+/// A bound that no value misses is a warning, and still unknown where there is no value.
+TEST(NotTracked, WhatEveryValueSatisfiesIsUnknownWithoutOne) {
+  for (const std::string condition :
+       {"touch_speed(cup, tray) >= 0 m/s", "touch_speed(cup, tray) > -1 m/s", "speed(cup) >= 0 m/s",
+        "distance(hand, cup) > -1 m", "tilt(cup) <= 180 deg", "abs(height(cup)) >= 0 m",
+        "height(cup) == height(cup)", "not (speed(cup) < 0 m/s)", "gap(hand, cup) != -1 m",
+        "known speed(cup) >= 0 m/s", "known (touch_speed(cup, tray) >= 0 m/s)"}) {
+    EXPECT_EQ(Held(While(condition), {Scene::kCup}), "0..300; 500..1000; ") << condition;
+    EXPECT_EQ(Held(While(condition), {}), "0..1000; ") << condition;
+  }
+  EXPECT_EQ(
+      Held("grammar t\nevent e(cup: Cup) while not known speed(cup) >= 0 m/s\n", {Scene::kCup}),
+      "300..500; ");
+  EXPECT_EQ(Held("grammar t\ndefine fast(cup: Cup, v: m/s) = speed(cup) >= v\n"
+                 "event e(cup: Cup) while fast(cup, 0 m/s)\n",
+                 {Scene::kCup}),
+            "0..300; 500..1000; ");
+}
+
 TEST(NotTracked, WindowsThatReachIntoTheGapHaveNoValueEither) {
   for (const std::string signal : {"mean(height(cup), 100 ms)", "min(height(cup), 100 ms)",
                                    "max(height(cup), 100 ms)", "median(height(cup), 100 ms)"}) {
