@@ -226,10 +226,11 @@ bool ExpressionParser::AtUnit(std::size_t ahead) const {
 }
 
 // `3 cm`, `3 cm/s`, `3/s`. A name after a number can only be a unit or the next word of the
-// language.
+// language, also `one hand per object`.
 void ExpressionParser::ParseUnit(Quantity& quantity) {
-  const bool starts =
-      Peek().kind == Token::Kind::kName && !IsReserved(Peek().text) && Peek().text != no_unit_;
+  const bool is_one_per = At("one") && Peek(1).kind == Token::Kind::kName;
+  const bool starts = Peek().kind == Token::Kind::kName && !IsReserved(Peek().text) &&
+                      Peek().text != no_unit_ && !is_one_per;
   if (!starts && !(At("/") && AtUnit(1))) return;
   double si = 1;
   quantity.dimension = ParseDimension(si);

@@ -41,6 +41,9 @@ TEST(Parser, BindsOperatorsAsDocumented) {
        "until (a(x) begins) since b(x) approaching gap(x) receding at most 0.005 m, slower than "
        "0.02 "
        "m/s at most 0.5 s, onset 0.001 m/s at most 3 s back"},
+      {"while a(x) and s(x) >= 0.5 one p per x", "while (a(x) and (s(x) >= 0.5)) one p per x"},
+      {"while s(x) < 2 one x per p and q, nearest within 1 s",
+       "while (s(x) < 2) one x per p and q, nearest within 1 s"},
       {"while a(x) drawn as phase \"#d62728\" without ghost",
        "while a(x) drawn as phase \"#D62728\" without ghost"},
       {"while a(x) with b = c(x) drawn as phase with ghost at end lasting 1 s",
