@@ -142,7 +142,10 @@ def check_json():
     unity = ("unit: m\naxes: y_up\nhanded: left\nt: time\ntime_unit: iso\neuler_order: YXZ\nangle_unit: deg\nentities:\n" +
              TABLE + f"  cup: {{position: \"{{x,y,z}}\", rotation: euler, {CUP}}}\n  hand: {{position: hand, {HAND}}}\n")
     for name in ("unity.jsonl", "unity.ndjson", "unity.json"):
-        expect_carried(name, "\n".join(lines) + "\n", unity)
+        said = expect_carried(name, "\n".join(lines) + "\n", unity)
+        assert "quaternion_order" not in said.stderr, said.stderr
+    said = expect_carried("unity.jsonl", "\n".join(lines) + "\n", "quaternion_order: xyzw\n" + unity)
+    assert "'quaternion_order' of the map says nothing here: no orientation is four numbers in a row" in said.stderr, said.stderr
     said = expect_carried("unity.jsonl", "\n".join(['{"program": "log 2", "unit": "m"}'] + lines), unity)
     assert "1 of 302 frames have no time, or nothing that the map asks for" in said.stderr, said.stderr
     untimed = [json.dumps(json.loads(lines[100]) | more) for more in ({"time": None}, {})]

@@ -557,6 +557,8 @@ TEST(ImportLayouts, OrdersOfAnglesAreChecked) {
   ExpectRefused("poses.csv", csv, map, "euler_order is missing");
   ExpectRefused("poses.csv", csv, map + "euler_order: ZYX\n", "the columns are in the order xyz");
   ExpectRefused("poses.csv", csv, map + "euler_order: abc\n", "expected three axes like XYZ");
+  ExpectRefused("poses.csv", csv, map + "euler_order: XYZ\nquaternion_order: wxyz\n",
+                "'quaternion_order' says nothing here: the file has angles");
 }
 
 }  // namespace

@@ -355,6 +355,20 @@ std::string Chain(const std::vector<std::string>& frames) {
   return writer.Bytes();
 }
 
+TEST_F(ImportMcap, AnOrderThatNamesOfFieldsContradictIsTold) {
+  const auto said = [&](const std::string& order) {
+    return Import(Transforms(), Replaced(kMap, "unit: m\n", "unit: m\n" + order)).err;
+  };
+  const std::string told =
+      "warning: quaternion_order is wxyz: of an orientation, the field x, or the first number, is "
+      "w\n";
+  EXPECT_NE(said("quaternion_order: wxyz\nsure: [upright, quaternion_order, place]\n").find(told),
+            std::string::npos)
+      << said("quaternion_order: wxyz\n");
+  EXPECT_EQ(said("quaternion_order: xyzw\n"), "");
+  EXPECT_EQ(said(""), "");
+}
+
 TEST_F(ImportMcap, ABodyTwiceInAMessageOfTfHasTheLastPose) {
   const auto twice = [](double off_m, double later_s, const std::string& topic = "/tf") {
     McapWriter writer;

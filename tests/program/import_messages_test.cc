@@ -293,9 +293,13 @@ TEST_F(ImportMessages, PositionsAloneAreReadAndTold) {
                                    for (const double value : Glove(i)) message.F64(value);
                                    return message.Bytes();
                                  }}}),
-                          Map("/a", "/b"));
+                          Map("/a", "/b", "quaternion_order: xyzw\n"));
   EXPECT_EQ(all.exit_code, 0) << all.err;
   EXPECT_NE(all.err.find("warning: the file has positions only, of 2 bodies"), std::string::npos)
+      << all.err;
+  EXPECT_NE(all.err.find("warning: 'quaternion_order' of the map says nothing here: no pose has an "
+                         "orientation\n"),
+            std::string::npos)
       << all.err;
 }
 

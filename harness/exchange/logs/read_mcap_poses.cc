@@ -199,8 +199,13 @@ class McapPoseReader {
     if (repeats > 0)
       note(fmt::format("{} {} twice in {}: the last pose counts", Listed(repeating),
                        repeating.size() == 1 ? "is" : "are", grammar::CountOf(repeats, "message")));
+    const bool oriented = std::ranges::find(oriented_, true) != oriented_.end();
+    if (map_.quaternion_order && !oriented)
+      note("'quaternion_order' of the map says nothing here: no pose has an orientation");
+    else if (series_->quaternion_order() == QuaternionOrder::kWxyz)
+      note("quaternion_order is wxyz: of an orientation, the field x, or the first number, is w");
     if (!has_positions) return;
-    poses.has_orientations = std::ranges::find(oriented_, true) != oriented_.end();
+    poses.has_orientations = oriented;
     for (std::size_t i = 0; i < oriented_.size() && poses.has_orientations; ++i) {
       if (!oriented_[i])
         note(fmt::format(

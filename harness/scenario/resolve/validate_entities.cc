@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
@@ -197,6 +198,39 @@ void CheckHand(const Named<HandActorYaml>& actor, const physics::Hand& hand,
                "a hand turns about y only: rpy_deg: [0, pitch, 0]");
 }
 
+/// 1 for "right_hand", -1 for "hands/human_left", 0 if it names no side, or both.
+int SideOf(std::string_view name) {
+  const auto has = [name = name.substr(name.rfind('/') + 1)](std::string_view side) {
+    const auto is_letter = [&](std::size_t i) {
+      return i < name.size() && std::isalpha(static_cast<unsigned char>(name[i]));
+    };
+    const std::size_t at = name.find(side);
+    return at != name.npos && !is_letter(at - 1) && !is_letter(at + side.size());
+  };
+  return static_cast<int>(has("right")) - static_cast<int>(has("left"));
+}
+
+/// Hands that are those of the other side, by their names.
+void JudgeSides(const ScenarioYaml& entry, DiagnosticList& odd) {
+  std::map<std::string, int> sides;
+  const auto judge = [&](std::string_view of, int side, const Located<std::string>& hand, int its) {
+    if (side * its < 0)
+      odd.Add(hand.where,
+              fmt::format("{}: '{}' is a {} hand", of, hand.value, its < 0 ? "left" : "right"),
+              "its thumb is on the other side; name what is meant");
+  };
+  for (const auto& hand : entry.hands) {
+    const int side = SideOf(hand.value.hand.value), by_name = SideOf(hand.name);
+    judge(hand.name, by_name, hand.value.hand, side);
+    sides[hand.name] = side != 0 ? side : by_name;
+  }
+  for (const Named<PersonActorYaml>& person : entry.persons) {
+    const PersonActorYaml& she = person.value;
+    if (she.right_hand) judge("right_hand", 1, *she.right_hand, sides[she.right_hand->value]);
+    if (she.left_hand) judge("left_hand", -1, *she.left_hand, sides[she.left_hand->value]);
+  }
+}
+
 }  // namespace
 
 std::optional<std::size_t> FindEntity(const ScenarioYaml& entry, const Located<std::string>& name,
@@ -249,6 +283,7 @@ grammar::Diagnostics ImplausibleSizes(const ScenarioYaml& entry, const physics::
     JudgeSize(entry.entities[i], scene.bodies[i], odd);
     JudgeLoad(entry, entry.entities[i], odd);
   }
+  JudgeSides(entry, odd);
   grammar::Diagnostics warnings = odd.Sorted();
   for (grammar::Diagnostic& warning : warnings) warning.is_warning = true;
   return warnings;

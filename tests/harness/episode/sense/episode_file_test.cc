@@ -248,6 +248,12 @@ TEST(EpisodeFile, WhatCannotBeIsRefused) {
     EXPECT_EQ(complaint(std::string(R"("a": {"size_m": [1, 1, 1], )") + right + "}"), "") << right;
   EXPECT_EQ(complaint(R"("a": {"class": "A", "size_m": [1, 1, 1], "kinds": ["B", "B"]})"),
             "'a': the kind 'B' is given twice\n");
+  EXPECT_EQ(complaint(R"("any": {"class": "A", "size_m": [1, 1, 1]})"),
+            "'any': this name stands for everybody, in claims and queries\n");
+  EXPECT_EQ(complaint(R"("r": {"abstract": "Region", "round": true, "size_m": [1, 1, 1]})"), "");
+  EXPECT_EQ(complaint(R"("r": {"abstract": "Region", "round": true, "size_m": [1, 1, 2]})"),
+            "'r': round: it is a ball, and its edges are 1, 1 and 2 m | size_m: three times its "
+            "diameter\n");
   EXPECT_EQ(complaint(R"("h": {"hand": true, "size_m": [1, 1, 1], "sensor_sets": ["t", "t"]})"),
             "'h': the sensor set 't' is given twice\n");
   EXPECT_NE(Complaint("{\"tick\": 1}\n{\"end_tick\": 5}\n{\"end_tick\": 6}\n")

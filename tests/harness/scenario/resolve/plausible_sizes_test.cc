@@ -35,6 +35,23 @@ TEST(PlausibleSizes, ASizeIsThatOfSomethingThatAHandDealsWith) {
   EXPECT_EQ(Warned("size_m: [1.2, 0.8, 0.04]", "size_m: [20, 0.8, 0.04]"), "");
 }
 
+TEST(PlausibleHands, AHandOfTheOtherSideIsTold) {
+  const auto hand = [](const std::string& text) {
+    return Warned("right_hand: {hand: human_right, at_m: [-0.2, -0.2, 1.05]}", text);
+  };
+  const std::string left = "hand: human_left, at_m: [-0.2, -0.2, 1.05]}";
+  EXPECT_EQ(hand("right_hand: {" + left),
+            "9:22: right_hand: 'human_left' is a left hand | its thumb is on the other side; name "
+            "what is meant\n");
+  const std::string two =
+      "right_hand: {hand: human_right, at_m: [-0.2, -0.2, 1.05]}\n  leftmost: {hand: human_left, "
+      "at_m: [-0.2, 0.2, 1.05]}\n  anna: {person: body, at_m: [-0.6, 0, 0], ";
+  EXPECT_EQ(hand(two + "right_hand: right_hand, left_hand: leftmost}"), "");
+  EXPECT_EQ(hand(two + "left_hand: right_hand}"),
+            "11:55: left_hand: 'right_hand' is a right hand | its thumb is on the other side; name "
+            "what is meant\n");
+}
+
 /// Of a tower of three, each counts what stands on it and on that.
 TEST(PlausibleSizes, AHundredTimesItsMassStandsOnIt) {
   const auto tower = [](const std::string& light_kg) {
