@@ -143,6 +143,7 @@ class Events(pd.DataFrame):
             NAME.eaf (ELAN), NAME.TextGrid (Praat), NAME.csv or NAME.json.
         """
         if str(file).endswith(".json"):
+            os.makedirs(os.path.dirname(os.path.abspath(file)), exist_ok=True)  # as for the others
             self.to_json(file, orient="records")
             return
         if not str(file).lower().endswith((".csv", ".eaf", ".textgrid")):

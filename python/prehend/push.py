@@ -273,7 +273,8 @@ def push_takes(connection, path):
             counted[0] += 1
             if not file:
                 continue
-            compiled = grammar.Grammar(str(take.get("grammar", one.grammar)))._compiled
+            asked = str(take.get("grammar", ""))  # its own stands in the episode file
+            compiled = grammar.Grammar(here / asked if asked.endswith(".grammar") else asked)._compiled if asked else None
             read = one._opened.read_labels(compiled, str(path), "", entry)  # with its rows, and by its clock
             for place, (event, roles, begin, end, *_) in enumerate(read):
                 labels.add(uuid, source, place, event, json.dumps(dict(roles)), begin / one.ticks_per_second, end / one.ticks_per_second)

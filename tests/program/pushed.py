@@ -169,6 +169,12 @@ def takes_and_scores(server, asked, base, folder):
     program("run", SCENARIOS[0], "--record", str(one))
     takes = folder / "takes.yaml"
     takes.write_text("takes:\n- {recording: one.episodes, labels: labels.csv, person: P7, set: test}\n")
+    mine = folder / "mine"
+    mine.mkdir()
+    (mine / "own.grammar").write_text("grammar own\nuse grasp\nevent reaching(hand: Hand, object: Thing) while distance(hand, object) < 1 m\n")
+    beside = mine / "takes.yaml"
+    beside.write_text("takes:\n- {recording: ../one.episodes, labels: ../labels.csv, grammar: own.grammar}\n")
+    expect(python("push", str(one), str(beside), server.url()), 0, "1 takes, 2 labels")
     scores = folder / "scores.json"
     scores.write_text(program("score", str(takes), "--json").stdout)
     for _ in range(2):

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <filesystem>
 
 #include "grammar/contents.h"
 #include "harness/base/base/atomic_file.h"
@@ -148,6 +149,8 @@ std::vector<Episode> OpenEpisodes(const std::vector<std::string>& files, const s
   if (!found) Refuse("", found.error().message);
   std::vector<Episode> episodes;
   for (episode::EpisodeName& name : *found) {
+    std::error_code error;
+    if (!std::filesystem::exists(name.file, error)) Refuse(name.file, "no such file");
     if (name.origin == episode::Origin::kScenario)
       Refuse(name.file, "it is a scenario, and this library plays none",
              "record it: " + CommandText({"run", name.scenario, "--record", "NAME.episodes"}));
