@@ -31,12 +31,24 @@ def by_name(values, what):
     return values or {}
 
 
+def _faulty(value, place=()):
+    """The place of the first value in it that is no plain one, that value, and why; None if all are."""
+    try:
+        json.dumps(value, default=_plain, allow_nan=False)
+        return None
+    except (TypeError, ValueError) as error:
+        parts = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, (list, tuple, np.ndarray)) else ()
+        return next((found for key, part in parts if (found := _faulty(part, (*place, key)))), (place, value, error))
+
+
 def to_json(value):
     """Numbers that are none are null."""
     try:
         return json.dumps(value, default=_plain, allow_nan=False)
-    except (TypeError, ValueError) as error:
-        fail(FrameError, f"found what is no plain value: {error}", "numbers are finite; None: not tracked")
+    except (TypeError, ValueError):
+        (first, *place), part, error = _faulty(value)
+    what = {"samples": "poses", "hands": "grips"}.get(first, first) + "".join(f"[{key!r}]" for key in place if key != "trigger")
+    return wrong(f"{what}: found {part!r}, wanted a plain value ({error})", "numbers are finite; None: not tracked")
 
 
 def _entity(name, spec):
@@ -144,6 +156,8 @@ def _of_table(table):
     if turned and len(turned) != 4:
         wrong(f"the table has {turned}, wanted all of qw, qx, qy, qz")
     columns = _POSE[:3] + turned
+    if (lacking := np.flatnonzero(~np.isfinite(_number_array(table["t"].to_numpy(), "column 't'")))).size:
+        wrong(f"row {lacking[0]}: t is no number", "each row has a time")
     t, row = np.unique(_number_array(table["t"].to_numpy(), "column 't'"), return_inverse=True)
     codes, names = pd.factorize(table["entity"], sort=False)
     if (codes < 0).any():
