@@ -17,6 +17,9 @@ ITEMS = ("use", "param", "define", "condition", "event", "symmetric", "law")
 WORDS = ITEMS + tuple("grammar while from to during until since at most back rest of outside compose where repeat otherwise "
                       "bridging lasting requires confirmed by within with without approaching receding slower than begins ends "
                       "and or not any style drawn known each".split())
+EVENT = "event {}(role_: Thing) while height(role_) > 1 m"
+ALONE = {"define": "define {}(role_: Thing) = height(role_) > 1 m\n" + EVENT.format("event_"), "event": EVENT, "condition": EVENT,
+         "role": "event event_({0}: Thing) while height({0}) > 1 m"}  # what has this name, and no other mistake
 UNITS = ("m", "cm", "mm", "s", "ms", "N", "rad", "deg")
 TOKEN = re.compile(r'(?P<comment>#[^\n]*)|(?P<text>"[^"\n]*"?)|(?P<number>\.?\d[\d.eE]*)|(?P<name>[A-Za-z_]\w*)|(?P<sign>\S)')
 
@@ -241,10 +244,19 @@ class Server:
         lines = list(grammar.lines)
         for _, word, at, column in reversed(renamed):
             lines[at] = lines[at][:column] + new + lines[at][column + len(word):]
-        before, after = ([error[3] for error in _prehend.check_grammar(grammar.file, text) if not error[5]]
-                         for text in (grammar.text, "\n".join(lines)))
+        def errors(text):
+            return [error[3] for error in _prehend.check_grammar(grammar.file, text) if not error[5]]
+        before, after = errors(grammar.text), errors("\n".join(lines))
         if len(after) > len(before):  # a signal, a class, or what a used file defines
             raise ValueError(f"'{new}': {next((error for error in after if error not in before), 'it is there already')}")
+        if before:  # what hides what the name breaks: it is tried alone, too
+            kind = "role" if is_role else next(grammar.tokens[i][1] for i, name in grammar.items if name == token[1])
+            others = [one for one in self.used(grammar).values() if one is not grammar]
+            values = {name for i, name in grammar.items if grammar.tokens[i][1] == "param"}
+            if any(new in one.defined for one in others) and not is_role or is_role and new in values:
+                raise ValueError(f"'{new}' is there already")
+            if alone := errors("grammar alone_\n" + ALONE[kind].format(new)) if kind in ALONE else []:
+                raise ValueError(f"'{new}': {alone[0]}")
         return {"changes": {params["textDocument"]["uri"]: [{"range": grammar.span(one), "newText": new} for one in renamed]}}
 
     def formatting(self, params):

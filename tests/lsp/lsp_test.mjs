@@ -121,6 +121,19 @@ test("rename, layout", async () => {
   assert.equal(edit.newText, TEXT);
 });
 
+test("a rename in a text with errors is refused as in one without", async () => {
+  for (const broken of ["\nevent later(cup: Thing) while", "\nevent later(cup: Thing) while heigth(cup) > 1 m\n"]) {
+    const text = TEXT + broken, { uri } = await opened("broken.grammar", text);
+    const rename = (words, newName) => ask("rename", uri, at(text, words, 1), { newName });
+    assert.ok(Object.values((await rename("at_mouth(hand: Hand", "sipping")).changes)[0].length > 1);
+    assert.ok(await rename("near = 5", "close"));
+    assert.ok(await rename("cup: Thing", "mug"));
+    for (const [words, newName] of [["at_mouth(hand: Hand", "speed"], ["at_mouth(hand: Hand", "grasping"],
+      ["cup: Thing", "near"], ["at_mouth(hand: Hand", "touching"]])
+      await assert.rejects(rename(words, newName), `${words} ${newName}`);
+  }
+});
+
 test("columns are those of UTF-16; a name begins behind its bracket; the words of a table of files are none", async () => {
   const text = 'grammar wide\ndefine near(a: Hand, b: Thing) = distance(a, b) < 5 cm\n' +
     'event a(hand: Hand, o: Thing)\n  while sensor_set(hand, "D\u00E4u\u{1F600}\u{1F600}", o) and near(hand, o) and speed(hand) > 3 s\n';
