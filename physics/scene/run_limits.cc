@@ -29,13 +29,13 @@ std::optional<RunProblem> CheckState(const std::string& name, const BodyState& s
     return RunProblem{name, "its state is not finite",
                       "look for zero sizes, extreme masses or gains just before this tick"};
   if (const double speed = state.v_WB_m_per_s.norm(); speed > kMaxSpeed_m_per_s)
-    return RunProblem{name, Say("it moves at %.0f m/s", speed),
-                      of_person
-                          ? "a person goes where her script says: give the step more time "
-                            "('over_s', 'join_s'); an arm or a leg whose end passes its own "
-                            "shoulder or hip closely bends the other way there: lead it around"
-                          : "it was probably squeezed or started inside another body; give it room "
-                            "or lower the strength"};
+    return RunProblem{
+        name, Say("it moves at %.0f m/s", speed),
+        of_person ? "a person goes where her script says: give the step more time "
+                    "('over_s', 'wait_s', 'join_s'); an arm or a leg whose end passes its own "
+                    "shoulder or hip closely bends the other way there: lead it around"
+                  : "it was probably squeezed or started inside another body; give it room "
+                    "or lower the strength"};
   if (const double distance = state.X_WB.p_m.norm(); distance > kMaxDistance_m)
     return RunProblem{name, Say("it is %.0f m from the origin", distance),
                       "it left the world; put a floor under it or end the script earlier"};

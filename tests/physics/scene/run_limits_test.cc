@@ -52,7 +52,8 @@ TEST(RunChecksTest, APersonWhoIsTooFastIsNotSqueezed) {
   now.bodies.resize(1);
   now.bodies[0].v_WB_m_per_s.x() = 60;
   EXPECT_EQ(CheckSnapshot(scene, now)->advice,
-            "a person goes where her script says: give the step more time ('over_s', 'join_s'); an "
+            "a person goes where her script says: give the step more time ('over_s', 'wait_s', "
+            "'join_s'); an "
             "arm or a leg whose end passes its own shoulder or hip closely bends the other way "
             "there: lead it around");
 }
