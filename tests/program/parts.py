@@ -101,6 +101,15 @@ def suite(folder):
     all_ = folder / "all.episodes"
     run("episode", "merge", *part[1:], "-o", all_, "--expect", 3)
     assert all_.read_bytes() == (folder / "one.episodes").read_bytes()
+    foreign = folder / "foreign.episodes"  # of somebody who keeps notes in the file
+    shutil.copyfile(part[1], foreign)
+    with sqlite3.connect(foreign) as database:
+        database.executescript("CREATE TABLE notes(of, note); INSERT INTO notes VALUES(1, 'x'); ALTER TABLE episode ADD COLUMN seen_by")
+    database.close()
+    many_episodes.sum_pages(foreign)
+    said = run("episode", "merge", foreign, *part[2:], "-o", folder / "own.episodes")
+    assert f"warning: {foreign}: not copied, as it is none of prehend's: episode.seen_by, notes\n" in said.stderr, said.stderr
+    assert (folder / "own.episodes").read_bytes() == all_.read_bytes()
     assert len(set(episodes(all_))) == len(episodes(all_)) == len(list((SOURCE / "scenarios/reach").glob("*.yaml")))
     assert verdicts(all_, folder) == verdicts(part[0], folder)
     told_the_same(folder, all_, part[0], folder / "one.episodes")

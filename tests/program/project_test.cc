@@ -180,6 +180,19 @@ TEST_F(OwnProject, ItsMarkerAndItsFoldersAreNoPlaceForOutputs) {
   EXPECT_FALSE(fs::exists(kitchen_ / "golden/mine"));
 }
 
+TEST_F(OwnProject, WhoIsInNoProjectHasPicturesBelowTheirFolder) {
+  const fs::path nowhere = folder_ / "nowhere";
+  fs::create_directories(nowhere);
+  const std::vector<std::string> render = {"render", "milk_carton_wrap", "--at", "1"};
+  const Said said = In(nowhere, render);
+  if (Has(said.err, "PREHEND_RENDER=OFF")) GTEST_SKIP() << said.err;
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_FALSE(fs::is_empty(nowhere / "build/pictures/pick_and_place"));
+  EXPECT_EQ(In(kitchen_ / "scenarios", render).exit_code, 0);
+  EXPECT_FALSE(fs::is_empty(kitchen_ / "build/pictures/pick_and_place"));
+  EXPECT_FALSE(fs::exists(kitchen_ / "scenarios/build"));
+}
+
 TEST_F(OwnProject, WhatIsOfNoProjectIsNotToBeAccepted) {
   const fs::path nowhere = folder_ / "nowhere";
   fs::create_directories(nowhere);
