@@ -431,5 +431,17 @@ TEST(ImportPropose, TakesOfAFolderWithOneMap) {
   EXPECT_EQ(Prehend({"import", takes, "--map", map, "-o", out + "2"}).exit_code, 2);
 }
 
+TEST(ImportPropose, NamesThatMeanSomethingElseAreNoHindrance) {
+  const std::string long_name = "marker_cluster_" + std::string(60, 'a') + "_on_the_cup";
+  for (const std::string& name :
+       {std::string("Camera"), std::string("LIGHT"), std::string("any"), std::string("body_part"),
+        std::string("gaze_target"), long_name}) {
+    Proposed(FreshFolder("propose_names"), "take.csv",
+             Plain(
+                 "t," + name + "_x," + name + "_y," + name + "_z,Hand_x,Hand_y,Hand_z", ",",
+                 [](int i) { return Text(i / kRate_hz) + ","; }, 1, false, ""));
+  }
+}
+
 }  // namespace
 }  // namespace prehend::house

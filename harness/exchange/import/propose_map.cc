@@ -22,14 +22,16 @@
 #include "harness/exchange/cells/column_names.h"
 #include "harness/exchange/doubts/plausibility.h"
 #include "harness/exchange/import/import_poses.h"
+#include "harness/exchange/import/track.h"
 #include "harness/exchange/poses/table_layout.h"
 
 namespace prehend::exchange {
 namespace {
 
 constexpr std::size_t kMostEntities = 40, kLongestName = 200;
-constexpr double kTableMoves_m = 0.02;  ///< what stays within is fixed, if it is called a table
-constexpr double kFromZero_m = 0.05;    ///< from a pose that stands for none
+constexpr std::size_t kLongestOwn = 54;  ///< of an entity, before body_ and a number
+constexpr double kTableMoves_m = 0.02;   ///< what stays within is fixed, if it is called a table
+constexpr double kFromZero_m = 0.05;     ///< from a pose that stands for none
 
 std::string Quoted(const std::string& text) { return nlohmann::json(text).dump(); }
 
@@ -49,7 +51,7 @@ struct Draft {
     std::string text =
         fmt::format("  {}: {{{}", name, keys.empty() ? "from: " + Quoted(from) : keys);
     if (hand) text += ", hand: true";
-    if (!hand) text += ", class: " + ClassOf();
+    if (!hand && !grammar::IsRootClass(ClassOf())) text += ", class: " + ClassOf();
     if (fixed) text += ", fixed: true";
     if (upright_at_s) text += fmt::format(", upright_at_s: {:g}", *upright_at_s);
     return text + ", size_m: unknown}\n";
@@ -251,8 +253,11 @@ class MapProposer {
           AnyOf(words, {side, letter, letter + "h", letter + "hand", side + std::string("hand")}))
         draft.name = name;
     }
-    static const std::set<std::string> kNoNames = {"y",   "n",    "yes",   "no",  "on",
-                                                   "off", "true", "false", "null"};  // in YAML
+    static const std::set<std::string> kNoNames = {"y",   "n",    "yes",   "no",   "on",
+                                                   "off", "true", "false", "null",  // in YAML
+                                                   "any"};
+    if (draft.name.size() > kLongestOwn)
+      draft.name.erase(kLongestOwn / 2, draft.name.size() - kLongestOwn);
     if (std::isdigit(static_cast<unsigned char>(draft.name[0])) || kNoNames.contains(draft.name))
       draft.name = "body_" + draft.name;
     const std::string name = draft.name;
@@ -338,17 +343,14 @@ class MapProposer {
           seen.rests, [&](const Rest& one) { return one.body == i && one.stands; });
       if (poses.has_orientations && !poses.stature && rest != seen.rests.end())
         body.upright_at_s = std::round(10 * seen.look_s * static_cast<double>(rest->begin)) / 10;
-      Eigen::AlignedBox3d extent;
-      for (std::size_t k = 0; k < samples.size(); ++k) {
-        extent.extend(samples[k].p);
+      for (std::size_t k = 0; k < samples.size(); ++k)
         for (const std::size_t next : {k - 1, k + 1})
           zeros_ = zeros_ || (samples[k].p.isZero(0) && next < samples.size() &&
                               samples[next].p.norm() * scale > kFromZero_m);
-      }
+      const bool is_table = !body.hand && IsTable(WordsIn(body.name));
+      body.fixed = is_table && WayOf(samples) * scale < kTableMoves_m;
       LetGo(samples);
-      body.fixed = !body.hand && extent.diagonal().norm() * scale < kTableMoves_m &&
-                   IsTable(WordsIn(body.name));
-      has_table = has_table || body.fixed;
+      has_table = has_table || is_table;
       hands_ = hands_ || body.hand;
     }
     if (!has_table) GuessTable(seen, map.WorldTurn());

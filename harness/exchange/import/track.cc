@@ -81,6 +81,17 @@ PoseSeries Smoothed(const PoseSeries& poses, double half_s) {
   return smooth;
 }
 
+double WayOf(const PoseSeries& poses) {
+  double way = 0;
+  for (const int axis : {0, 1, 2}) {
+    std::vector<double> at;
+    for (const PoseSample& pose : poses) at.push_back(pose.p[axis]);
+    std::ranges::sort(at);
+    way = std::max(way, at[at.size() * 39 / 40] - at[at.size() / 40]);
+  }
+  return way;
+}
+
 double Trembling_m(const PoseSeries& poses) {
   constexpr double kOfTrembling = 3.2;  // largest share of both that such repetition has
   const double bends_m = OffNeighbours_m(poses, 2), rough_m = OffNeighbours_m(poses, 6);

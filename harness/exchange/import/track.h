@@ -40,6 +40,9 @@ bool IsLost(const Track& track, double t_s);
 /// not drawn to one side.
 PoseSeries Smoothed(const PoseSeries& poses, double half_s);
 
+/// How far it goes along an axis, but for errors of some frames.
+double WayOf(const PoseSeries& poses);
+
 /// The standard deviation of its position on each axis, as far as it is noise. A smooth path bends
 /// from frame to frame, but a polynomial through six neighbours follows it; what repeats faster
 /// than every four frames is off both.
