@@ -74,5 +74,59 @@ TEST(ImportGaps, LostInRowsAPauseIsNone) {
       << early.err;
 }
 
+// The cup is seen once a second, the hand in between.
+TEST(ImportGaps, StepsOfASlowBodyAreToldOrDecidedByBridge) {
+  std::string csv = "t,name,x,y,z,qw,qx,qy,qz\n";
+  for (int i = 0; i <= 360; ++i)
+    csv += (i % 60 == 0 ? AsWritten("Mug", CupAt(i / 60.0)) : "") +
+           AsWritten("Glove", HandAt(i / 60.0));
+  const auto folder = FreshFolder("slow_body");
+  const Said filled = ImportCsv(folder, csv, kCupMap);
+  EXPECT_EQ(filled.exit_code, 0) << filled.err;
+  EXPECT_NE(filled.err.find("'Mug' is seen every 1.000 s only: straight lines fill 6 such times"),
+            std::string::npos)
+      << filled.err;
+  const Said refused = ImportCsv(folder, csv, kCupMap + std::string("bridge_s: 0.1\n"));
+  EXPECT_EQ(refused.exit_code, 2) << refused.err;
+  EXPECT_NE(refused.err.find("'Mug' is not tracked for 1.000 s from 0.000 s on; in all 6 such "
+                             "times, 6.000 s"),
+            std::string::npos)
+      << refused.err;
+  const Said bridged = ImportCsv(folder, csv, kCupMap + std::string("bridge_s: 1.01\n"));
+  EXPECT_EQ(bridged.exit_code, 0) << bridged.err;
+  EXPECT_EQ(bridged.err.find("straight lines"), std::string::npos) << bridged.err;
+}
+
+TEST(ImportGaps, AfterTheLastRowNothingIsKnown) {
+  const auto folder = FreshFolder("ends_late");
+  std::string csv = "t,name,x,y,z,qw,qx,qy,qz\n";
+  for (int i = 0; i <= 360; ++i)
+    csv += AsWritten("Mug", CupAt(i / 60.0)) + AsWritten("Glove", HandAt(i / 60.0));
+  const Said refused = ImportCsv(folder, csv, kCupMap + std::string("end_s: 100\n"));
+  EXPECT_EQ(refused.exit_code, 2) << refused.err;
+  EXPECT_NE(refused.err.find("'Mug' is not tracked for 94.000 s from 6.000 s on"),
+            std::string::npos)
+      << refused.err;
+  const Said unknown = ImportCsv(folder, csv, kCupMap + std::string("end_s: 100\nlost: unknown\n"));
+  EXPECT_EQ(unknown.exit_code, 0) << unknown.err;
+  EXPECT_TRUE(ReadFile(folder / "take.jsonl")
+                  .find("{\"tick\":61001,\"samples\":{\"cup\":null,\"hand\":null}") !=
+              std::string::npos)
+      << unknown.err;
+}
+
+TEST(ImportGaps, AFrameThatIsMissingAtAnEndIsCounted) {
+  const auto folder = FreshFolder("frame_missing");
+  std::string csv = "t,name,x,y,z,qw,qx,qy,qz\n";
+  for (int i = 0; i <= 360; ++i)
+    csv += (i > 0 && i < 360 ? AsWritten("Mug", CupAt(i / 60.0)) : "") +
+           AsWritten("Glove", HandAt(i / 60.0));
+  const Said said = ImportCsv(folder, csv, kCupMap);
+  EXPECT_NE(
+      said.out.find("cup              Mug                  359    59.9        2     0.033     0"),
+      std::string::npos)
+      << said.out;
+}
+
 }  // namespace
 }  // namespace prehend::house

@@ -24,7 +24,7 @@
 namespace prehend::episode {
 
 inline constexpr double kMaxPosition_m = 1e4;
-inline constexpr double kMaxVelocity = 1e4;  ///< m/s, rad/s
+inline constexpr double kMaxVelocity = 1e11;  ///< m/s, rad/s: more than any way within a tick gives
 inline constexpr std::int64_t kLatestTick = 1'000'000'000'000;
 inline constexpr std::size_t kMaxCollisionSpheres = 1000;
 

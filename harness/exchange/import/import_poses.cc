@@ -13,6 +13,7 @@
 #include "grammar/base/diagnostic.h"
 #include "grammar/base/frame.h"
 #include "harness/base/yaml/diagnostic_list.h"
+#include "harness/episode/sense/episode_format.h"
 #include "harness/exchange/doubts/plausibility.h"
 #include "harness/exchange/doubts/rest_poses.h"
 #include "harness/exchange/import/track.h"
@@ -21,8 +22,8 @@
 namespace prehend::exchange {
 namespace {
 
-constexpr double kGap = 1.5;         ///< of the usual step: longer is a gap
-constexpr double kFarthest_m = 1e4;  ///< of the recording format
+constexpr double kWholeStep = 0.9;  ///< of the usual step: a frame is missing, at an end
+constexpr double kGap = 1.5;        ///< of the usual step: longer is a gap
 constexpr double kUnmoved_m = 0.001, kSmoothedOff_m = 0.02, kFixedMoves_m = 0.03;
 constexpr double kTrembles_m = 0.0008;  ///< more than this hides how things move
 constexpr double kMostTrembling_m = 0.5, kTrembleRate_hz = 8;  ///< fewer poses: it is motion
@@ -152,8 +153,7 @@ class Importer {
       return tl::unexpected(grammar::Diagnostics{{.file = file_.file, .message = problem}});
     WarnOfRestPoses(AddFrames());
     if (!errors_.empty()) return tl::unexpected(errors_.Sorted());
-    WarnOfNoOrientations();
-    WarnOfSizes();
+    for (std::string& text : UnknownOfBodies(map_, file_)) Warn(std::move(text));
     constexpr std::size_t kMostNamed = 20;
     const std::size_t unused = file_.unused.size(), named = std::min(unused, kMostNamed);
     if (unused > 0)
@@ -185,29 +185,6 @@ class Importer {
     else if (says_place)
       Warn(place_.Text() + ": " + place_.Remedy());
     if (!tilt.empty()) Warn(std::move(tilt));
-  }
-
-  void WarnOfSizes() {
-    std::vector<std::string> names, flat;
-    bool has_hand = false;
-    for (const Named<MappedEntity>& entity : map_.entities) {
-      has_hand |= entity.value.hand;
-      if (entity.value.guesses_size) names.push_back("'" + entity.name + "'");
-      if (!entity.value.hand && (entity.value.size_m.array() == 0).any())
-        flat.push_back("'" + entity.name + "'");
-    }
-    if (!has_hand)
-      Warn("no entity is a hand (hand: true), so nothing is reached for, grasped or moved by one");
-    if (!flat.empty())
-      Warn(
-          fmt::format("size_m has an edge of 0 m, and to be filled in, of {}: things rest on and "
-                      "touch what has a size",
-                      fmt::join(flat, ", ")));
-    if (!names.empty())
-      Warn(
-          fmt::format("size_m is unknown, and to be filled in, of {}: a box as such things often "
-                      "are is assumed",
-                      fmt::join(names, ", ")));
   }
 
   /// Where the pose of a track that is nearest after a time stands in the file.
@@ -279,10 +256,10 @@ class Importer {
     }
     for (const PoseSample& pose : track.poses) report.extent.extend(pose.p);
     LetGo(track.poses);
-    if (report.extent.min().minCoeff() < -kFarthest_m ||
-        report.extent.max().maxCoeff() > kFarthest_m)
+    if (report.extent.min().minCoeff() < -episode::kMaxPosition_m ||
+        report.extent.max().maxCoeff() > episode::kMaxPosition_m)
       errors_.Add(entity.name_where, fmt::format("'{}' is farther than {:g} m from the origin",
-                                                 entity.name, kFarthest_m));
+                                                 entity.name, episode::kMaxPosition_m));
     imported_.entities.push_back(std::move(report));
   }
 
@@ -310,6 +287,13 @@ class Importer {
                       entity.name, said.Names()));
     const auto [least, most] =
         std::ranges::minmax(series.samples, {}, &OpeningSeries::Sample::open);
+    const double farthest = std::max(std::abs(said.PositionAt(least.open, map_)),
+                                     std::abs(said.PositionAt(most.open, map_)));
+    if (!series.is_grip && farthest > episode::kMaxPosition_m)
+      errors_.Add(said.where,
+                  fmt::format("'{}' is at {:g} m or rad; a joint is at most at {:g}", entity.name,
+                              farthest, episode::kMaxPosition_m),
+                  "the unit of its values, beside 'open': unit: mm, or another");
     imported_.openings +=
         fmt::format("{}: {} '{}': {} values at {:.1f} Hz, {:.0f} to {:.0f} % open\n", entity.name,
                     series.is_grip ? "grip" : "joint", said.Names(), series.samples.size(),
@@ -348,18 +332,33 @@ class Importer {
     return within ? row != file_.rows_s.end() && *row < until_s : from_s < until_s;
   }
 
+  /// What comes after the last row without a pose, longer than a bridge, is lost.
+  double EndOfRows_s() const {
+    const bool ends_late = map_.end_s && map_.lost != Lost::kInRows &&
+                           map_.end_s->value > file_.last_s + map_.bridge_s;
+    return ends_late ? map_.end_s->value : file_.last_s;
+  }
+
   void MarkGaps(double usual_s, const Where& where, bool of_opening, Track& track,
                 EntityReport& report) {
     PoseSeries& poses = track.poses;
     report.poses = poses.size();
     report.rate_hz = usual_s > 0 ? 1 / usual_s : 0;
     double longest_s = 0, longest_from_s = 0, bridge_s = 0;
+    std::size_t own_steps = 0;
     const auto take = [&](double from_s, double until_s, bool within) {
       const double gap_s = until_s - from_s;
-      const bool in_rows = map_.lost == Lost::kInRows;
-      if (in_rows ? !HasRowIn(from_s, until_s, within) || track.stands : gap_s <= kGap * usual_s)
+      const bool in_rows = map_.lost == Lost::kInRows, is_step = gap_s <= kGap * usual_s,
+                 is_long = gap_s > map_.bridge_s + 1e-9;
+      const bool passes_row = HasRowIn(from_s, until_s, within) && !track.stands;
+      const bool is_long_step = !in_rows && is_step && is_long && passes_row;
+      own_steps += within && is_long_step && !map_.says_bridge;
+      if (in_rows ? !passes_row
+                  : is_step && !(is_long_step && map_.says_bridge) &&
+                        (within || gap_s <= kWholeStep * usual_s))
         return false;
-      const bool lost = gap_s > map_.bridge_s + 1e-9 || !within || in_rows;
+      const bool lost =
+          in_rows || (is_step ? is_long_step && map_.says_bridge : is_long || !within);
       (lost ? report.lost : report.bridged) += 1;
       (lost ? report.lost_s : report.bridged_s) += gap_s;
       if (lost && within) bridge_s = std::max(bridge_s, std::ceil(100 * gap_s - 1e-6) / 100);
@@ -372,8 +371,14 @@ class Importer {
     track.lost_before = take(0, poses.front().t_s, false);
     for (std::size_t i = 1; i < poses.size(); ++i)
       if (take(poses[i - 1].t_s, poses[i].t_s, true)) poses[i].after_loss = true;
-    track.lost_after = take(poses.back().t_s, file_.last_s, false);
+    track.lost_after = take(poses.back().t_s, EndOfRows_s(), false);
     LetGo(poses);
+    if (own_steps > 0)
+      Warn(fmt::format(
+          "'{}' {} every {:.3f} s only: straight lines fill {}, longer than bridge_s: {:g}; a "
+          "bridge_s in the map holds for these, too",
+          report.from, of_opening ? "has a value" : "is seen", usual_s,
+          grammar::CountOf(own_steps, "such time"), map_.bridge_s));
     if (report.lost == 0) return;
     const std::string text =
         fmt::format("'{}' {} for {:.3f} s from {:.3f} s on; in all {}, {:.3f} s", report.from,
@@ -410,13 +415,7 @@ class Importer {
       Warn(fmt::format("the hand '{}' never leaves {:.1f} mm", entity.name,
                        extent.diagonal().norm() * 1e3));
     if (!entity.value.fixed) return;
-    double way_m = 0;  // but for errors of some frames
-    for (const int axis : {0, 1, 2}) {
-      std::vector<double> at_m;
-      for (const PoseSample& pose : poses) at_m.push_back(pose.p[axis]);
-      std::ranges::sort(at_m);
-      way_m = std::max(way_m, at_m[at_m.size() * 39 / 40] - at_m[at_m.size() / 40]);
-    }
+    const double way_m = WayOf(poses);
     if (way_m > kFixedMoves_m)
       Warn(
           fmt::format("'{}' moves by {:.2f} m, and the map says that it is fixed, which is only "
@@ -466,23 +465,14 @@ class Importer {
                          : ""));
   }
 
-  /// What nobody can judge without them.
-  void WarnOfNoOrientations() {
-    if (file_.has_orientations) return;
-    Warn(
-        fmt::format("the file has positions only, of {} {}, and no orientations: every tilt(..) "
-                    "is 0, so no pouring is recognised, hold_tips cannot tell what is tipped in a "
-                    "hand from what was put down, and up is always up in a thing (boxes, offset_m)",
-                    file_.bodies.size(), file_.bodies.size() == 1 ? "body" : "bodies"));
-  }
-
   std::int64_t TickOf(double t_s) const {
     return std::llround(t_s * static_cast<double>(map_.ticks_per_second));
   }
 
   /// Of all bodies, where they decide what is lost.
   void SetRows() {
-    if (map_.lost != Lost::kInRows) return;
+    const auto is_slow = [&](const Kept& kept) { return kGap * kept.usual_s > map_.bridge_s; };
+    if (map_.lost != Lost::kInRows && std::ranges::none_of(kept_, is_slow)) return;
     for (const Track& track : tracks_)
       for (const PoseSample& pose : track.poses) file_.rows_s.push_back(pose.t_s);
     std::ranges::sort(file_.rows_s);
@@ -530,7 +520,10 @@ class Importer {
         const double end_s = poses[k - 1].t_s + map_.bridge_s;
         const std::int64_t tick = TickOf(end_s) + 1;  // at its end a bridge still holds
         const auto next = times_.lower_bound(tick);
-        if (next != times_.end() && next->second > end_s + kGap * kept_[i].usual_s)
+        const double next_s = next != times_.end() ? next->second
+                              : map_.end_s         ? map_.end_s->value
+                                                   : 0;
+        if (next_s > end_s + (next != times_.end() ? kGap * kept_[i].usual_s : 0))
           times_.emplace_hint(next, tick, end_s + 1.0 / static_cast<double>(map_.ticks_per_second));
       }
       LetGo(poses);

@@ -49,6 +49,9 @@ episode::EpisodeHeader HeaderOf(const MapFile& map, const std::string& poses_pat
 PoseSample InRecording(const PoseSample& sample, const MappedEntity& entity, const ImportMap& map,
                        const std::optional<Eigen::Quaterniond>& upright);
 
+/// What nobody can judge without orientations, sizes and hands: a warning each.
+std::vector<std::string> UnknownOfBodies(const ImportMap& map, const PoseFile& file);
+
 /// What the file has, as its map says.
 Result<Imported> ImportPoses(PoseFile poses, const MapFile& map);
 /// Reads, checks and converts. Nothing comes of a file with errors.

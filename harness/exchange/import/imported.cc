@@ -2,6 +2,7 @@
 // See harness/exchange/import/import_poses.h: what is read, what a recording has before its
 // frames, and what is told of it.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -13,6 +14,8 @@
 namespace prehend::exchange {
 namespace {
 
+constexpr std::size_t kLongestEpisode = 64;  ///< of the recording format
+
 std::string EpisodeName(const ImportMap& map, const std::string& path) {
   if (!map.episode.empty()) return map.episode;
   std::string name = std::filesystem::path(path).stem().string();
@@ -22,6 +25,8 @@ std::string EpisodeName(const ImportMap& map, const std::string& path) {
     if (!is_plain) c = '_';
   }
   if (name.empty() || (name[0] >= '0' && name[0] <= '9')) name = "take_" + name;
+  // Takes differ at the beginning or at the end, by date or by number.
+  if (name.size() > kLongestEpisode) name.erase(kLongestEpisode / 2, name.size() - kLongestEpisode);
   return name;
 }
 
@@ -54,6 +59,38 @@ episode::EpisodeHeader HeaderOf(const MapFile& file, const std::string& poses_pa
     }
   }
   return header;
+}
+
+std::vector<std::string> UnknownOfBodies(const ImportMap& map, const PoseFile& file) {
+  std::vector<std::string> texts;
+  if (!file.has_orientations)
+    texts.push_back(
+        fmt::format("the file has positions only, of {} {}, and no orientations: every tilt(..) "
+                    "is 0, so no pouring is recognised, hold_tips cannot tell what is tipped in a "
+                    "hand from what was put down, and up is always up in a thing (boxes, offset_m)",
+                    file.bodies.size(), file.bodies.size() == 1 ? "body" : "bodies"));
+  std::vector<std::string> names, flat;
+  bool has_hand = false;
+  for (const Named<MappedEntity>& entity : map.entities) {
+    has_hand |= entity.value.hand;
+    if (entity.value.guesses_size) names.push_back("'" + entity.name + "'");
+    if (!entity.value.hand && (entity.value.size_m.array() == 0).any())
+      flat.push_back("'" + entity.name + "'");
+  }
+  if (!has_hand)
+    texts.push_back(
+        "no entity is a hand (hand: true), so nothing is reached for, grasped or moved by one");
+  if (!flat.empty())
+    texts.push_back(
+        fmt::format("size_m has an edge of 0 m, and to be filled in, of {}: things rest on and "
+                    "touch what has a size",
+                    fmt::join(flat, ", ")));
+  if (!names.empty())
+    texts.push_back(
+        fmt::format("size_m is unknown, and to be filled in, of {}: a box as such things often "
+                    "are is assumed",
+                    fmt::join(names, ", ")));
+  return texts;
 }
 
 std::string ImportTable(const Imported& imported) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "harness/exchange/import/import_poses.h"
 #include "harness/exchange/poses/table_layout.h"
@@ -178,6 +179,9 @@ void LivePoses::Add(std::size_t entity, PoseSample sample) {
   }
   if (e.upright_at_s && !upright_[entity]) upright_[entity] = sample.q;
   const PoseSample at = InRecording(sample, e, map, upright_[entity]);
+  if (!(at.p.cwiseAbs().maxCoeff() <= episode::kMaxPosition_m))
+    too_far_ = fmt::format("'{}' is farther than {:g} m from the origin", map.entities[entity].name,
+                           episode::kMaxPosition_m);
   samples_[entity] = {
       .at_m = at.p,
       .quat_wxyz = Located<Eigen::Vector4d>{{at.q.w(), at.q.x(), at.q.y(), at.q.z()}, {}}};
@@ -191,7 +195,11 @@ void LivePoses::AddOpening(const OpeningSeries& opening) {
   }
   const ImportMap& map = map_->map;
   samples_[opening.entity].joint_fraction = std::clamp(open, 0.0, 1.0);
-  samples_[opening.entity].joint_position = opening.Of(map).PositionAt(open, map);
+  const double at = opening.Of(map).PositionAt(open, map);
+  if (std::abs(at) > episode::kMaxPosition_m)
+    too_far_ = fmt::format("'{}' is at {:g} m or rad; a joint is at most at {:g}",
+                           map.entities[opening.entity].name, at, episode::kMaxPosition_m);
+  samples_[opening.entity].joint_position = at;
 }
 
 grammar::Diagnostics LivePoses::Emit(episode::EpisodeStream& stream) {
@@ -223,6 +231,8 @@ grammar::Diagnostics LivePoses::Emit(episode::EpisodeStream& stream) {
   given_s_ = frame_s;
   frame_s_.reset();
   opened_.assign(opened_.size(), false);
+  if (!too_far_.empty())
+    return {{.file = name_, .place = {line_, 1}, .message = std::exchange(too_far_, "")}};
   if (stream.frame() && last_s_ && frame_s <= *last_s_)
     return {{.file = name_,
              .place = {line_, 1},

@@ -52,6 +52,7 @@ class LivePoses {
   std::vector<bool> opened_;                     ///< of it, which of the openings are known
   std::vector<std::optional<double>> triggers_;  ///< by entity: the last ones
   std::vector<std::optional<Eigen::Quaterniond>> upright_;  ///< by entity, in the file's axes
+  std::string too_far_;  ///< what of it is beyond what a recording may say, or ""
   bool has_frame_ = false;
   std::vector<std::string> notes_;
 };

@@ -248,9 +248,8 @@ void CheckMap(const ImportMap& map, PoseFormat format, const YamlNode& root,
     const MappedEntity& e = entity.value;
     tracked = tracked || e.from;
     if (entity.name == "any")
-      errors.Add(
-          entity.name_where,
-          "'any': this name stands for everybody, in claims and queries; wanted another one");
+      errors.Add(entity.name_where, "'any': this name stands for everybody, in claims and queries",
+                 "another name, and from: any");
     CheckDatasets(entity, format, errors);
     CheckOpenings(entity, format, errors);
     CheckTwice(e.markers, "marker has a name", errors);
@@ -416,6 +415,7 @@ Result<MapFile> ReadImportMap(Result<YamlDocument> document, PoseFormat format,
                    : e.fixed ? Eigen::Vector3d(1.2, 0.8, 0.04)
                              : Eigen::Vector3d(0.1, 0.1, 0.1);
     }
+    file.map.says_bridge = root.Find("bridge_s") != nullptr;
     if (complete) complete(root.where, file.map, errors);
     CheckMap(file.map, format, root, errors);
   }

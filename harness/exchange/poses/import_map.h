@@ -155,7 +155,8 @@ struct ImportMap {
   int header_line = 0;               ///< 0: the first; of lines with '#', the one with the names
   std::vector<std::string> missing;  ///< cells that mean "not tracked", besides empty ones
   bool zero_is_missing = false;
-  double bridge_s = 0.1;  ///< the longest gap that is filled with a straight line
+  double bridge_s = 0.1;     ///< the longest gap that is filled with a straight line
+  bool says_bridge = false;  ///< the map does
   Lost lost = Lost::kRefuse;
   std::optional<Located<double>> end_s;      ///< none: at its last row
   OutlierRule outlier = OutlierRule::kKeep;  ///< of poses that leave and come back too fast
