@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "tests/program/program.h"
 
@@ -100,6 +101,64 @@ TEST_F(ReportLabels, AVideoIsNamedAndNotCopied) {
                   "labels.yaml:2:8: error: video: expected a file .mp4 or .webm, found "
                   "'milk.avi'"))
       << wrong.err;
+}
+
+/// The commands of the page, without repetitions.
+std::set<std::string> CommandsOf(const std::string& page) {
+  std::set<std::string> commands;
+  for (std::size_t at = page.find("prehend explain "); at != std::string::npos;
+       at = page.find("prehend explain ", at + 1))
+    commands.insert(page.substr(at, page.find_first_of("<\n", at) - at));
+  return commands;
+}
+
+/// As a shell splits them.
+std::vector<std::string> WordsOf(const std::string& command) {
+  std::vector<std::string> words(1);
+  bool is_quoted = false;
+  for (const char c : command) {
+    if (c == '\'')
+      is_quoted = !is_quoted;
+    else if (c == ' ' && !is_quoted)
+      words.emplace_back();
+    else
+      words.back() += c;
+  }
+  words.erase(words.begin());
+  return words;
+}
+
+TEST_F(ReportLabels, CommandsAskWhatWasCompared) {
+  // Another recording of this name, about something else.
+  std::string other = ReadFile(folder_ / "milk.jsonl");
+  for (std::size_t at = other.find("milk"); at != std::string::npos; at = other.find("milk"))
+    other.replace(at, 4, "soap");
+  WriteFile(folder_ / "other/milk.jsonl", other);
+  std::size_t asked = 0;
+  for (const std::vector<std::string>& sides :
+       {std::vector<std::string>{"--truth", docs_ + "/labels.csv", "--map", docs_ + "/labels.yaml",
+                                 "--grammar", "pick_and_place_from_motion", "--set",
+                                 "lift_rise=30cm"},
+        {Path("other/milk.jsonl"), "--grammar", "pick_and_place_from_motion", "--grammar",
+         "original_2020"}}) {
+    ASSERT_EQ(Report(sides).exit_code, 0);
+    for (const std::string& command : CommandsOf(Page())) {
+      const bool has_set = sides.back() == "lift_rise=30cm";
+      EXPECT_EQ(Has(command, " --set lift_rise=30cm"), has_set) << command;
+      EXPECT_TRUE(Has(command, " --grammar ")) << command;
+      if (const bool is_question = Has(command, " @"); is_question && ++asked % 4 != 1) continue;
+      const Said said = Prehend(WordsOf(command));
+      EXPECT_EQ(said.exit_code, 0) << command << said.err;
+      const std::size_t at = command.find('@');
+      if (at == std::string::npos) continue;
+      const std::string time = command.substr(at + 1, command.find('s', at) - at - 1);
+      const std::string first = said.out.substr(0, said.out.find('\n'));
+      EXPECT_TRUE(Has(first, Has(command, " --expected ") ? " did not happen" : " " + time + ".."))
+          << command << first;
+    }
+  }
+  EXPECT_GT(asked, 8u);
+  EXPECT_TRUE(Has(Page(), "/other/milk.jsonl --grammar"));
 }
 
 TEST_F(ReportLabels, LabelsMayNameSomeRoles) {

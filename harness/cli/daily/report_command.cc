@@ -2,20 +2,25 @@
 // prehend report: recorded episodes as one web page. Tested by
 // tests/program/report_command_test.cc and tests/program/report_labels_test.cc
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
 
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/quoting.h"
 #include "harness/cli/command/command.h"
 #include "harness/cli/daily/recogniser_choice.h"
 #include "harness/measure/score/score_labels.h"
+#include "harness/show/explain/query.h"
 #include "harness/suite/check/causes.h"
 #include "harness/suite/check/last_pass.h"
 #include "harness/suite/check/run_suite.h"
@@ -112,22 +117,85 @@ suite::ReportTable AgreementOf(const std::string& first, const measure::Score& s
   return table;
 }
 
-/// Adds what one side says of a take to its verdict.
+/// Asks `prehend explain` about what sides say; the first one has the number 0.
+class Asker {
+ public:
+  /// `kept`: the takes, as they are opened here.
+  Asker(const measure::LabelsRequest& request, const std::vector<episode::EpisodeName>& kept)
+      : request_(request), kept_(kept), opener_(request.root) {}
+
+  /// The command about a take, without options.
+  std::string Command(std::size_t take) const {
+    const episode::EpisodeName& name = request_.takes[take].episode;
+    const bool is_scenario = name.origin == episode::Origin::kScenario;
+    return suite::CommandAbout("explain", is_scenario ? name.scenario : name.file) +
+           (name.number ? fmt::format(" --episode {}", *name.number) : "");
+  }
+
+  /// The grammar of a side; labels and programs have no reasons.
+  std::optional<episode::GrammarChoice> Grammar(std::size_t side, std::size_t take) const {
+    const std::size_t labels = request_.first_is_truth ? 0 : 1;
+    const auto& sources = request_.asking.sources;
+    const measure::Source source =
+        side < labels || sources.empty() ? measure::Source() : sources[side - labels];
+    if (side < labels || source.kind != measure::Source::Kind::kGrammar) return std::nullopt;
+    const std::string& own = request_.takes[take].episode.asked;
+    return episode::GrammarChoice{source.text.empty() ? own : source.text, request_.settings};
+  }
+
+  /// A side is asked why it differs, or else the first one; "" if neither can be: not every grammar
+  /// knows what others find.
+  std::string Question(const truth::Pairing& pairing, std::size_t side, std::size_t take,
+                       grammar::Tick ticks_per_second) {
+    truth::Pairing turned = pairing;
+    std::swap(turned.expected, turned.actual);
+    turned.pieces.clear();
+    for (const auto& [asked, what] : {std::pair(side, &pairing), {std::size_t{0}, &turned}}) {
+      const auto grammar = Grammar(asked, take);
+      if (!grammar || !(what->actual || Knows(*grammar, take, what->event()))) continue;
+      std::string options;
+      for (const std::string& option : suite::OptionsOf(*grammar)) options += option + " ";
+      return options + truth::QuestionAbout(*what, ticks_per_second);
+    }
+    return "";
+  }
+
+ private:
+  bool Knows(const episode::GrammarChoice& grammar, std::size_t take,
+             const grammar::NamedEvent& event) {
+    auto episode = opener_.Open(kept_[take], grammar);
+    return episode &&
+           show::ParseAsk("", truth::AskedAs(event), *episode->program(), episode->entities());
+  }
+
+  const measure::LabelsRequest& request_;
+  const std::vector<episode::EpisodeName>& kept_;
+  episode::EpisodeOpener opener_;
+};
+
+/// Adds what one side says of a take to its verdict. `question`: about a difference.
 void Add(truth::Comparison comparison, const std::string& side, bool is_only,
+         const std::function<std::string(const truth::Pairing&)>& question,
          suite::ScenarioVerdict& verdict) {
   const bool is_first = !verdict.has_golden;
-  for (suite::Attribution one : suite::AttributeDifferences(comparison, {}, {})) {
-    one.because = (is_only ? "" : side + ": ") + one.event;
-    verdict.attributions.push_back(std::move(one));
+  const std::vector<const truth::Pairing*> differing = comparison.Differing();
+  std::vector<suite::Attribution> all = suite::AttributeDifferences(comparison, {}, {});
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i].because = (is_only ? "" : side + ": ") + all[i].event;
+    all[i].question = question(*differing[i]);
+    verdict.attributions.push_back(std::move(all[i]));
   }
   if (!comparison.Agrees()) {
     verdict.verdict = suite::Verdict::kFailed;
     verdict.exit_code = ExitCode::kDiffers;
-    verdict.reason += fmt::format("{}{}{} of {} events differ", verdict.reason.empty() ? "" : "; ",
-                                  is_only ? "" : side + ": ", comparison.Differing().size(),
-                                  comparison.pairings.size());
-    verdict.details +=
-        (is_only ? "" : side + ":\n") + truth::DifferenceText(comparison, verdict.explain);
+    verdict.reason +=
+        fmt::format("{}{}{} of {} events differ", verdict.reason.empty() ? "" : "; ",
+                    is_only ? "" : side + ": ", differing.size(), comparison.pairings.size());
+    verdict.details += (is_only ? "" : side + ":\n") +
+                       truth::DifferenceText(comparison, [&](const truth::Pairing& pairing) {
+                         const std::string asked = question(pairing);
+                         return asked.empty() ? "" : verdict.explain + " " + asked;
+                       });
   }
   verdict.has_golden = true;
   if (is_first)
@@ -148,25 +216,39 @@ double Differing(const suite::ScenarioVerdict& verdict) {
   return differing / all;
 }
 
+/// Before anybody is compared. `made_by`: made the page, and repeats what no grammar says.
+void Empty(const Asker& asker, std::size_t take, std::size_t sides, const std::string& made_by,
+           suite::ScenarioVerdict& verdict) {
+  verdict.verdict = suite::Verdict::kPassed;
+  verdict.exit_code = ExitCode::kAgrees;
+  verdict.has_golden = false;
+  verdict.reason = verdict.details = "";
+  verdict.attributions.clear();
+  verdict.explained = {};
+  verdict.explain = asker.Command(take);
+  std::set<std::string> commands;
+  for (std::size_t side = 0; side <= sides; ++side) {
+    const auto grammar = asker.Grammar(side, take);
+    if (!grammar) continue;
+    std::string command = verdict.explain;
+    for (const std::string& option : suite::OptionsOf(*grammar)) command += " " + option;
+    commands.insert(std::move(command));
+  }
+  verdict.command = commands.empty() ? made_by : fmt::format("{}", fmt::join(commands, "\n"));
+}
+
 /// Makes the verdicts, one for each take, those of a comparison with the first side ("labels"), and
 /// sorts them, the worst first. The header has sides, tables and title. `page`: where it will lie.
 /// `warnings`: of videos that are not there.
 suite::ReportHeader CompareSides(const measure::LabelScores& scores, const std::string& first,
-                                 double collar_s, const std::string& page,
+                                 double collar_s, const std::string& page, Asker& asker,
+                                 const std::string& made_by,
                                  std::vector<suite::ScenarioVerdict>& verdicts,
                                  std::string& warnings) {
   suite::ReportHeader header{.title = "Comparison with " + first, .sides = {first}};
-  for (suite::ScenarioVerdict& verdict : verdicts) {
-    if (verdict.exit_code == ExitCode::kBadInput) continue;
-    verdict.verdict = suite::Verdict::kPassed;
-    verdict.exit_code = ExitCode::kAgrees;
-    verdict.has_golden = false;
-    verdict.reason = verdict.details = "";
-    verdict.attributions.clear();
-    verdict.explained = {};
-    verdict.command = suite::CommandAbout("explain", verdict.file);
-    verdict.explain = verdict.command;
-  }
+  for (std::size_t take = 0; take < verdicts.size(); ++take)
+    if (verdicts[take].exit_code != ExitCode::kBadInput)
+      Empty(asker, take, scores.opinions.size(), made_by, verdicts[take]);
   for (const measure::Score& score : scores.of_grammars)
     header.tables.push_back(AgreementOf(first, score));
   for (const measure::Opinion& opinion : scores.opinions) {
@@ -180,7 +262,11 @@ suite::ReportHeader CompareSides(const measure::LabelScores& scores, const std::
         for (const auto& [event, moments] : take.moments)
           verdict.labelled.moments.insert(verdict.labelled.moments.end(), moments.labels.begin(),
                                           moments.labels.end());
-      Add(comparisons.back(), opinion.name, scores.opinions.size() == 1, verdict);
+      const auto question = [&](const truth::Pairing& pairing) {
+        return asker.Question(pairing, header.sides.size() - 1, take.take,
+                              comparisons.back().ticks_per_second);
+      };
+      Add(comparisons.back(), opinion.name, scores.opinions.size() == 1, question, verdict);
       if (!take.failure.empty())
         verdict.notes.push_back(opinion.name + " has failed here: " + take.failure);
       if (take.video.empty() || !verdict.labelled.video.empty()) continue;
@@ -266,7 +352,9 @@ ExitCode ReportSides(std::vector<episode::Take> takes, const std::string& page,
   const double collar_s = kDefaultCollar_ms / 1000;
   const std::string first = has_labels ? "labels" : scores->first;
   warnings.clear();
-  suite::ReportHeader header = CompareSides(*scores, first, collar_s, page, verdicts, warnings);
+  Asker asker(request, *kept);
+  suite::ReportHeader header = CompareSides(*scores, first, collar_s, page, asker,
+                                            CommandText(context.words), verdicts, warnings);
   context.err << warnings;
   const suite::ReportHeader made =
       suite::HeaderOf(CommandText(context.words), context.root, context.today);

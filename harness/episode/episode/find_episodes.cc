@@ -262,11 +262,15 @@ Result<EpisodeName> EpisodeKeeper::Keep(const EpisodeName& episode, const std::s
   if (episode.number) return episode;
   std::string name = episode.scenario;
   std::ranges::replace(name, '/', '_');
-  const std::string file = (fs::path(folder_) / (name + ".episodes")).string();
+  const std::string source = episode.origin == Origin::kScenario ? episode.scenario : episode.file;
+  std::string file = (fs::path(folder_) / (name + ".episodes")).string();
+  // Recordings of several folders may have one name.
+  for (int i = 2; sources_.contains(file) && sources_[file] != source; ++i)
+    file = (fs::path(folder_) / fmt::format("{}_{}.episodes", name, i)).string();
   std::error_code error;
   fs::create_directories(folder_, error);
   fs::remove(file, error);
-  sources_[file] = episode.origin == Origin::kScenario ? episode.scenario : episode.file;
+  sources_[file] = source;
   grammar::Diagnostics problems =
       episode.origin == Origin::kRecording
           ? Import({file, root_, episode.file, grammar, today_, ProgramHash()}, warnings_)

@@ -214,7 +214,7 @@ std::vector<Cause> CausesOf(const std::vector<ScenarioVerdict>& verdicts) {
   const auto add = [&](const std::string& because, const EffectKey& key,
                        const ScenarioVerdict& verdict, const std::string& command) {
     Gathered& of = gathered[because][key];
-    if (of.scenarios.empty()) of.command = command;
+    if (of.scenarios.empty() || verdict.scenario < *of.scenarios.begin()) of.command = command;
     of.scenarios.insert(verdict.scenario);
     ++of.count;
     return &of;
@@ -233,8 +233,9 @@ std::vector<Cause> CausesOf(const std::vector<ScenarioVerdict>& verdicts) {
         add(difference.because, {"", KindOfReason(difference.what)}, verdict, verdict.command);
         continue;
       }
+      const bool can_ask = !verdict.explain.empty() && !difference.question.empty();
       Gathered* of = add(difference.because, {difference.event, difference.what}, verdict,
-                         verdict.explain + " " + difference.question);
+                         can_ask ? verdict.explain + " " + difference.question : verdict.command);
       if (difference.shift_ms != 0) of->shifts_ms.push_back(difference.shift_ms);
     }
   }

@@ -352,7 +352,7 @@ ScenarioVerdict Unreadable(const CheckRequest& request, ScenarioVerdict verdict,
              why}},
            verdict);
   AttributeUnread(request, verdict);
-  if (request.IsPlayed()) verdict.command = CommandAbout("validate", request.id, request.changes);
+  if (request.IsPlayed()) verdict.command = CommandAbout("validate", request.id, request.Asked());
   return verdict;
 }
 
@@ -377,11 +377,11 @@ std::string NextCommand(const CheckedEpisode& checked) {
                  ? CommandText({"review", (is_below ? from_here : source).string()})
                  : again;
     }
-    return request.changes.settings.empty() ? CommandAbout("review", request.id, request.changes)
+    return request.changes.settings.empty() ? CommandAbout("review", request.id, request.Asked())
                                             : again;
   }
   if (!checked.IsComplete() && request.IsPlayed())
-    return CommandAbout("run", request.id, request.changes);
+    return CommandAbout("run", request.id, request.Asked());
   const bool can_review = request.in_project && request.IsAsItsFileSays();
   return is_pending && can_review ? CommandAbout("review", request.id) : again;
 }

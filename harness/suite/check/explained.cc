@@ -132,13 +132,11 @@ ExplainedDifference ExplainDifference(const truth::Pairing& pairing, grammar::Re
   const grammar::NamedEvent& event = pairing.actual ? *pairing.actual : *pairing.expected;
   ExplainedDifference difference{
       .what = fmt::format("{} {}", Name(pairing.agreement), pairing.event().Label())};
-  std::string question = event.event, label = event.event + "(";
-  for (const grammar::Role& role : event.roles) {
-    if (truth::IsAttribute(role)) continue;
-    label += (label.ends_with('(') ? "" : ", ") + role.value;
-    question += " " + role.value;
-  }
-  question += " @" + truth::SecondsText(event.interval.begin, per_second) + "s";
+  std::string label = event.event + "(";
+  for (const grammar::Role& role : event.roles)
+    if (!truth::IsAttribute(role)) label += (label.ends_with('(') ? "" : ", ") + role.value;
+  const std::string question =
+      truth::AskedAs(event) + " @" + truth::SecondsText(event.interval.begin, per_second) + "s";
   const Result<show::Ask> ask =
       show::ParseAsk("event", question, past.program(), past.entity_table());
   if (!ask) return difference;

@@ -206,14 +206,13 @@ std::string CommandAbout(const char* name, const std::string& id,
 std::string ExplainCommand(const CheckRequest& request) {
   const episode::EpisodeName& episode = request.episode;
   if (request.listen) return "";
-  if (!episode.number) return CommandAbout("explain", request.id, request.changes);
-  return CommandAbout("explain", episode.file, request.changes) +
-         fmt::format(" --episode {}", *episode.number);
+  return CommandAbout("explain", episode.number ? episode.file : request.id, request.Asked()) +
+         (episode.number ? fmt::format(" --episode {}", *episode.number) : "");
 }
 
 std::string RepeatCommand(const CheckRequest& request) {
   return CommandAbout("check", request.episode.number ? request.episode.file : request.id,
-                      request.changes) +
+                      request.Asked()) +
          (request.listen ? " --recogniser " + ShellQuoted(request.recogniser) : "");
 }
 

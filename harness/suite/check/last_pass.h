@@ -121,6 +121,10 @@ struct CheckRequest {
       nullptr;  ///< gets the tick that the run has reached; may be null
 
   episode::RunRequest Run() const { return {episode.file, changes.grammar, changes.settings}; }
+  /// With the grammar of a file of takes, if the command line names none.
+  episode::GrammarChoice Asked() const {
+    return {changes.grammar.empty() ? episode.asked : changes.grammar, changes.settings};
+  }
   /// Whether it is simulated here and now.
   bool IsPlayed() const { return episode.origin == episode::Origin::kScenario; }
   /// Whether nothing is changed by the command line, so that what differs can be accepted.

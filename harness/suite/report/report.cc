@@ -389,8 +389,9 @@ void AddCauses(pugi::xml_node body, const std::vector<Cause>& causes,
                    fmt::format("and {} more", cause.effects.size() - kMostEffects));
       const pugi::xml_node example = AddElement(item, "div", {{"class", "soft"}});
       if (count > 1) AddText(example, "for example ");
-      AddElement(example, "a", {{"href", "#" + cause.scenarios.front()}}, cause.scenarios.front());
-      AddCommand(item, cause.effects.front().command);
+      const Effect& shown = cause.effects.front();
+      AddElement(example, "a", {{"href", "#" + shown.scenarios.front()}}, shown.scenarios.front());
+      AddCommand(item, shown.command);
     }
   }
   if (near_limit.empty()) return;

@@ -310,7 +310,13 @@ std::string PiecesText(const std::vector<grammar::Interval>& pieces, Tick ticks_
   return fmt::format("{} pieces: {}", pieces.size(), fmt::join(texts, ", "));
 }
 
-std::string PairingText(const Pairing& pairing, Tick ticks_per_second, std::string_view command,
+/// "" without a command.
+std::string WhyText(std::string_view command, const Pairing& pairing, Tick ticks_per_second) {
+  return command.empty() ? ""
+                         : std::string(command) + " " + QuestionAbout(pairing, ticks_per_second);
+}
+
+std::string PairingText(const Pairing& pairing, Tick ticks_per_second, const std::string& why,
                         std::string_view facts) {
   const auto side = [&](const std::optional<grammar::NamedEvent>& event) {
     const bool is_actual = &event == &pairing.actual;
@@ -326,8 +332,7 @@ std::string PairingText(const Pairing& pairing, Tick ticks_per_second, std::stri
     text += fmt::format("  {}\n", OffsetText(pairing, ticks_per_second));
   if (!pairing.changes.empty()) text += fmt::format("  {}\n", fmt::join(pairing.changes, ", "));
   text += facts;
-  if (!command.empty())
-    text += fmt::format("  why: {} {}\n", command, QuestionAbout(pairing, ticks_per_second));
+  if (!why.empty()) text += fmt::format("  why: {}\n", why);
   return text;
 }
 
@@ -358,7 +363,7 @@ Json PairingJson(const Pairing& pairing, Tick ticks_per_second, std::string_view
           {"tolerance_ms", offset_ms(pairing.tolerance)},
           {"changes", pairing.changes},
           {"pieces", std::move(pieces)},
-          {"why", std::string(command) + " " + QuestionAbout(pairing, ticks_per_second)}};
+          {"why", WhyText(command, pairing, ticks_per_second)}};
 }
 
 }  // namespace
@@ -450,20 +455,31 @@ std::string QuestionAbout(const Pairing& pairing, Tick ticks_per_second) {
   const grammar::NamedEvent& event = pairing.actual ? *pairing.actual : *pairing.expected;
   const bool in_pieces = pairing.agreement == LineVerdict::kFragmented && !pairing.pieces.empty();
   const Tick begin = in_pieces ? pairing.pieces.front().begin : event.interval.begin;
-  std::string question = event.event;
-  for (const grammar::Role& role : event.roles) {
-    if (!IsAttribute(role)) question += " " + role.value;
-  }
-  question += " @" + SecondsText(begin, ticks_per_second) + "s";
-  return (pairing.actual ? "--event " : "--expected ") + ShellQuoted(question);
+  return (pairing.actual ? "--event " : "--expected ") +
+         ShellQuoted(AskedAs(event) + " @" + SecondsText(begin, ticks_per_second) + "s");
+}
+
+std::string AskedAs(const grammar::NamedEvent& event) {
+  std::string text = event.event;
+  for (const grammar::Role& role : event.roles)
+    if (!IsAttribute(role)) text += " " + role.value;
+  return text;
 }
 
 std::string DifferenceText(const Comparison& comparison, std::string_view command,
                            std::string_view facts) {
+  return DifferenceText(
+      comparison,
+      [&](const Pairing& of) { return WhyText(command, of, comparison.ticks_per_second); }, facts);
+}
+
+std::string DifferenceText(const Comparison& comparison,
+                           const std::function<std::string(const Pairing&)>& why,
+                           std::string_view facts) {
   const std::vector<const Pairing*> differing = comparison.Differing();
   std::string text;
   for (const Pairing* pairing : differing) {
-    text += PairingText(*pairing, comparison.ticks_per_second, command,
+    text += PairingText(*pairing, comparison.ticks_per_second, why(*pairing),
                         pairing == differing.front() ? facts : std::string_view());
   }
   for (const RelationChange& change : comparison.relations) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdlib>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -106,9 +107,15 @@ Comparison Compare(const Golden& expected, const grammar::Timeline& actual,
 /// are shown with the first difference. Empty when all agree.
 std::string DifferenceText(const Comparison& comparison, std::string_view command,
                            std::string_view facts = {});
+/// `why`: the command about a difference, or "".
+std::string DifferenceText(const Comparison& comparison,
+                           const std::function<std::string(const Pairing&)>& why,
+                           std::string_view facts = {});
 
 /// The question to `prehend explain` about a difference: "--event 'sliding hand cup @0.1000s'".
 std::string QuestionAbout(const Pairing& pairing, grammar::Tick ticks_per_second);
+/// "sliding hand cup"
+std::string AskedAs(const grammar::NamedEvent& event);
 
 /// The same differences, and the relations that changed, as lists for programs: keys in
 /// docs/regression-suite.md.

@@ -57,6 +57,16 @@ TEST(Causes, AreGroupedWithCountMedianAndOneCommand) {
   EXPECT_EQ(CausesText(CausesOf({})), "");
   const auto two = CausesOf({Failed("s/a", {Late(120)}), Failed("s/b", {Late(71)})});
   EXPECT_EQ(CausesJson(two)[0]["effects"][0]["median_ms"], 95.5) << "between the two";
+  const Effect late =
+      CausesOf({Failed("s/b", {Late(120)}), Failed("s/a", {Late(71)})})[0].effects[0];
+  EXPECT_EQ(late.command, "prehend explain " + late.scenarios.front() + " --event q");
+}
+
+TEST(Causes, OfWhatNobodyCanBeAskedTheCommandRepeatsIt) {
+  ScenarioVerdict heard = Failed("s/a", {Late(120)});
+  heard.explain = "";
+  heard.command = "prehend check s/a --recogniser r";
+  EXPECT_EQ(CausesOf({heard})[0].effects[0].command, heard.command);
 }
 
 TEST(Causes, APassAtTheLimitIsAWarning) {

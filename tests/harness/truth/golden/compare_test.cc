@@ -212,6 +212,7 @@ TEST(Compare, ProgramsAreToldTheSame) {
   EXPECT_EQ(differences[0]["pieces"].size(), 2u);
   EXPECT_EQ(differences[0]["pieces"][1]["begin_s"], 0.06);
   EXPECT_EQ(differences[0]["why"], "explain x --event 'reaching hand cup @0.0000s'");
+  EXPECT_EQ(DifferencesJson(comparison, "")[0]["why"], "") << "nobody can be asked";
   EXPECT_EQ(differences[1], nlohmann::ordered_json::parse(R"({
     "kind": "shifted", "event": "grasping",
     "expected": {"event": "grasping", "roles": {"hand": "hand", "object": "cup"}, "attributes": {},
