@@ -100,6 +100,24 @@ test('a click on a boundary says which condition turned there', async () => {
   await close();
 });
 
+test('a click in a short bar, or just beside it, means the nearer end', async () => {
+  const {page, close} = await opened({hash: '#' + FAILS});
+  const bar = page.locator('section[id="' + FAILS + '"] rect.actual').filter({has: page.locator('title', {hasText: 'picking_up'})});
+  const {left, right, y, begin, end} = await bar.evaluate((each) => {
+    each.scrollIntoView({block: 'center'});
+    const {left, right, top, height} = each.getBoundingClientRect();
+    return {left, right, y: top + height / 2, begin: Number(each.dataset.begin), end: Number(each.dataset.end)};
+  });
+  assert.ok(right - left > 9 && right - left < 13, `${right - left} px: of 8 both ends are near`);
+  for (const [x, wanted] of [[left + 5, begin], [right - 4, end], [left - 6, begin], [right + 6, end]]) {
+    await page.mouse.click(x, y);
+    assert.equal(await page.evaluate((id) => window.prehendReport.cursorOf(id), FAILS), wanted, `${x - left} px after its begin`);
+  }
+  await page.mouse.click(right + 12, y);
+  assert.ok(await page.evaluate((id) => window.prehendReport.cursorOf(id), FAILS) > end, 'farther away it is no end');
+  await close();
+});
+
 test('the moment that differs is shown as golden, recognised, difference, and with a slider', async (context) => {
   const {page, seen, close} = await opened({hash: '#' + FAILS});
   const all = page.locator('section[id="' + FAILS + '"] .drawn-difference'), pair = all.first();
@@ -262,9 +280,18 @@ test('each difference is explained, with the signal that decided', async () => {
 
 test('by keyboard: search, next, boundaries, play', async () => {
   const {page, close} = await opened();
+  const chosen = () => page.locator('main > section:visible').getAttribute('id');
+  const listed = await page.locator('tr[data-of]').evaluateAll((rows) => rows.map((row) => row.dataset.of));
+  assert.equal(await chosen(), listed[0]);
   await page.keyboard.press('n');
-  assert.equal(await hashOf(page), '#' + await page.evaluate(() => window.prehendReport.scenarios()[0]));
+  assert.equal(await hashOf(page), '#' + listed[1], 'the next after that which is shown');
+  await page.keyboard.press('p');
   await page.keyboard.press('/');
+  await page.keyboard.type('slidq');
+  assert.equal(await page.locator('main > section:visible').count(), 0);
+  await page.keyboard.press('Backspace');
+  assert.match(await chosen(), /slid/, 'the first found');
+  await page.locator('#search').fill('');
   await page.keyboard.type('milk_carton_wrap');
   assert.equal(await page.textContent('#shown'), '1 of ' + await page.locator('section.scenario').count() + ' shown');
   const timeline = page.locator('section:visible .scroll');

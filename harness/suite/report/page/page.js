@@ -45,7 +45,7 @@
       head.hidden = !row || !row.dataset.of;
     });
     shown.textContent = count + ' of ' + sections.length + ' shown';
-    if (chosen && chosen.hidden) choose(inOrder()[0]);
+    if (chosen ? chosen.hidden : wide.matches) choose(wide.matches ? inOrder()[0] : null);
   }
   /// Those that are shown, as the list has them.
   function inOrder() {
@@ -128,18 +128,16 @@
     section.querySelector('summary').focus({preventScroll: true});
     section.scrollIntoView({block: 'start'});
   }
-  let at = null;
   function step(by) {
     const visible = inOrder();
     if (visible.length === 0) return;
-    at = visible[Math.min(Math.max(at ? visible.indexOf(at) + by : 0, 0), visible.length - 1)];
-    open(at);
-    history.replaceState(null, '', '#' + encodeURI(at.id));
+    open(visible[Math.min(Math.max(chosen ? visible.indexOf(chosen) + by : 0, 0), visible.length - 1)]);
+    history.replaceState(null, '', '#' + encodeURI(chosen.id));
   }
   document.addEventListener('keydown', (event) => {
     if (event.target === search) {
       if (event.key === 'Escape') { search.value = ''; filter(); search.blur(); }
-      if (event.key === 'Enter') { at = null; step(0); }
+      if (event.key === 'Enter') step(-Infinity);
       return;
     }
     if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches('input, select')) return;
@@ -322,9 +320,11 @@
     }
     svg.addEventListener('pointermove', (event) => { if (event.buttons > 0) setCursor(section, moment(event)); });
     svg.addEventListener('click', (event) => {
-      const bar = event.target.closest('rect[data-begin]');
-      const exact = bar ? nearest(moment(event), [Number(bar.dataset.begin), Number(bar.dataset.end)], section) : moment(event);
-      setCursor(section, exact);
+      const beside = Array.from(svg.querySelectorAll('rect[data-begin]')).filter((bar) => {
+        const {top, bottom} = bar.getBoundingClientRect();
+        return top <= event.clientY && event.clientY < bottom;
+      });
+      setCursor(section, nearest(moment(event), beside.flatMap(({dataset: {begin, end}}) => [Number(begin), Number(end)]), section));
       history.replaceState(null, '', link(section));
     });
     const buttons = document.createElement('div');
@@ -358,11 +358,10 @@
       history.replaceState(null, '', link(section));
     });
   });
-  /// A click near the end of a bar means that end.
+  /// A click near an end of a bar, in it or beside it, means that end.
   function nearest(seconds, ends, section) {
-    const near = 8 / perSecond(section);
-    const end = ends.find((each) => Math.abs(each - seconds) <= near);
-    return end === undefined ? seconds : end;
+    const apart = (end) => Math.abs(end - seconds), near = 8 / perSecond(section);
+    return ends.filter((end) => apart(end) <= near).sort((a, b) => apart(a) - apart(b)).concat(seconds)[0];
   }
   /// The next boundary of any event after this time, or the last before it.
   function boundary(svg, seconds, forward) {
@@ -478,7 +477,6 @@
     const parts = decodeURI(location.hash.slice(1)).split('@');
     const section = document.getElementById(parts[0]);
     if (!section || !section.matches('section.scenario')) return;
-    at = section;
     open(section);
     const seconds = parseFloat(parts[1]);
     if (!(seconds >= 0)) return;
@@ -505,11 +503,9 @@
     // For sides.js.
     page: {sections, timelineOf, button, inOrder, setCursor, show: (section) => {
       if (chosen !== section) open(section);
-      at = section;
       history.replaceState(null, '', link(section));
     }},
   };
   group();
-  if (wide.matches) choose(inOrder()[0]);
   follow();
 }());
