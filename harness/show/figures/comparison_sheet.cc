@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,23 +18,6 @@ using grammar::Tick;
 
 constexpr std::size_t kAgreedMoments = 4;
 constexpr double kAround_s = 0.15;  ///< what happens so long before and after is in the view
-
-/// A boundary that is at two times, or an event that only one side has.
-struct BoundaryDifference {
-  std::string boundary;  ///< "begin of reaching(right_hand, milk)", "reaching(right_hand, milk)"
-  std::string how;       ///< "120.8 ms later", "0.41 to 1.05 s"
-  std::vector<std::string> involved;  ///< hands and things of the event
-  double first_s = 0, second_s = 0;
-  bool first_has = true, second_has = true;
-
-  bool HaveBoth() const { return first_has && second_has; }
-  double Begin_s() const {
-    return HaveBoth() ? std::min(first_s, second_s) : first_has ? first_s : second_s;
-  }
-  bool IsAtTheTimesOf(const BoundaryDifference& other) const {
-    return HaveBoth() && other.HaveBoth() && first_s == other.first_s && second_s == other.second_s;
-  }
-};
 
 class Differ {
  public:
@@ -123,6 +107,7 @@ class Differ {
                .involved = Involved(pairing),
                .first_s = whole.begin_s,
                .second_s = whole.begin_s,
+               .end_s = whole.end_s,
                .first_has = has,
                .second_has = !has}};
     }
@@ -143,7 +128,9 @@ class Differ {
     if (differences.empty()) {
       const double begin_s = Seconds(pairing.actual->interval.begin);
       differences.push_back({.boundary = label,
-                             .how = std::string(truth::Name(pairing.agreement)),
+                             .how = pairing.changes.empty()
+                                        ? std::string(truth::Name(pairing.agreement))
+                                        : fmt::format("{}", fmt::join(pairing.changes, ", ")),
                              .involved = Involved(pairing),
                              .first_s = begin_s,
                              .second_s = begin_s});
@@ -251,6 +238,12 @@ std::string AgreementText(const truth::Comparison& comparison) {
 
 }  // namespace
 
+std::vector<BoundaryDifference> BoundaryDifferences(const truth::Comparison& comparison,
+                                                    const Window& window,
+                                                    const scenario::Scenario& scenario) {
+  return Differ(comparison, window, scenario).Differences();
+}
+
 Chart ComparisonChart(const scenario::Scenario& scenario, const Side& first, const Side& second,
                       const truth::Comparison& comparison, const Window& window) {
   Chart of_first = PhasesChart(scenario, *first.events, window),
@@ -268,7 +261,7 @@ Sheet ComparisonSheet(const scenario::Scenario& scenario, const Side& first, con
   Chart chart = WithoutTwins(ComparisonChart(scenario, first, second, comparison, window),
                              first.name, second.name);
   const std::vector<BoundaryDifference> differences =
-      Differ(comparison, window, scenario).Differences();
+      BoundaryDifferences(comparison, window, scenario);
   SceneRows scenes(scenario, first, second, format, painter);
   std::size_t number = 0;
   const auto mark = [&](double time_s) {

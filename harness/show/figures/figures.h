@@ -4,6 +4,7 @@
 // tests/harness/show/figures/figures_test.cc and tests/program/figure_test.cc
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,6 +47,29 @@ Chart DrawingChart(const grammar::Program& program, const grammar::DrawnEpisode&
 // Two segmentations of one episode, or of one scenario in two physics engines: both over time, and
 // the scene at each boundary that they do not agree about. Tested by
 // tests/harness/show/figures/comparison_sheet_test.cc
+
+/// A boundary that is at two times, or an event that only one side has or has otherwise.
+struct BoundaryDifference {
+  std::string boundary;  ///< "begin of reaching(right_hand, milk)", "reaching(right_hand, milk)"
+  std::string how;       ///< "120.8 ms later", "0.41 to 1.05 s", "style: pinch -> wrap"
+  std::vector<std::string> involved;  ///< hands and things of the event
+  double first_s = 0, second_s = 0;
+  double end_s = 0;  ///< of an event that only one side has
+  bool first_has = true, second_has = true;
+
+  bool HaveBoth() const { return first_has && second_has; }
+  double Begin_s() const {
+    return HaveBoth() ? std::min(first_s, second_s) : first_has ? first_s : second_s;
+  }
+  bool IsAtTheTimesOf(const BoundaryDifference& other) const {
+    return HaveBoth() && other.HaveBoth() && first_s == other.first_s && second_s == other.second_s;
+  }
+};
+/// Those that begin in the window, in the order of time. Boundaries that are at one time for both
+/// sides are one.
+std::vector<BoundaryDifference> BoundaryDifferences(const truth::Comparison& comparison,
+                                                    const Window& window,
+                                                    const scenario::Scenario& scenario);
 
 /// More boundaries than these have no scenes; a note says how many.
 inline constexpr std::size_t kMostDifferences = 8;

@@ -117,7 +117,12 @@ bool IsGone(const truth::Pairing& difference, const truth::Comparison& without) 
   });
 }
 
-/// "begins later", "begins and ends earlier", "missing", "object: milk -> cup".
+bool BeginMovedMost(const truth::Pairing& pairing) {
+  return std::abs(pairing.begin_offset) >= std::abs(pairing.end_offset);
+}
+
+/// "begins later", "begins and ends earlier", "ends earlier (and begins later)", "missing",
+/// "object: milk -> cup". What moved most comes first: its shift is told.
 std::string WhatDiffers(const truth::Pairing& pairing) {
   if (pairing.agreement == truth::LineVerdict::kChanged && !pairing.changes.empty())
     return fmt::format("{}", fmt::join(pairing.changes, ", "));
@@ -130,18 +135,17 @@ std::string WhatDiffers(const truth::Pairing& pairing) {
   const bool begin = moved(pairing.begin_offset), end = moved(pairing.end_offset);
   if (begin && end && (pairing.begin_offset > 0) == (pairing.end_offset > 0))
     return fmt::format("begins and ends {}", direction(pairing.begin_offset));
+  const std::string begins = fmt::format("begins {}", direction(pairing.begin_offset)),
+                    ends = fmt::format("ends {}", direction(pairing.end_offset));
   if (begin && end)
-    return fmt::format("begins {}, ends {}", direction(pairing.begin_offset),
-                       direction(pairing.end_offset));
-  return begin ? fmt::format("begins {}", direction(pairing.begin_offset))
-               : fmt::format("ends {}", direction(pairing.end_offset));
+    return BeginMovedMost(pairing) ? begins + " (and " + ends + ")"
+                                   : ends + " (and " + begins + ")";
+  return begin ? begins : ends;
 }
 
 Attribution Described(const truth::Pairing& pairing, grammar::Tick ticks_per_second) {
   const bool is_shift = pairing.agreement == truth::LineVerdict::kShifted;
-  const grammar::Tick most = std::abs(pairing.begin_offset) >= std::abs(pairing.end_offset)
-                                 ? pairing.begin_offset
-                                 : pairing.end_offset;
+  const grammar::Tick most = BeginMovedMost(pairing) ? pairing.begin_offset : pairing.end_offset;
   return {.event = pairing.event().event,
           .what = WhatDiffers(pairing),
           .shift_ms = is_shift ? truth::MillisecondsOf(most, ticks_per_second) : 0,

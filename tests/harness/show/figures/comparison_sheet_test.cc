@@ -62,6 +62,18 @@ TEST(ComparisonSheet, HatchesTheThingThatDiffersOfThoseThatBeginTogether) {
   EXPECT_TRUE(RowOf(chart, "cup on (golden)")->hatches.empty());
 }
 
+TEST(ComparisonSheet, SaysWhatIsOtherwiseAtTheSameTime) {
+  const auto& [loaded, run] = Of("pick_and_place/milk_carton_wrap");
+  const auto [golden, comparison] = GoldenLike(run, [](auto& events) {
+    std::ranges::find(EventOf(events, "grasping").roles, "style", &grammar::Role::name)->value =
+        "pinch";
+  });
+  const auto differences = BoundaryDifferences(comparison, WholeOf(run), loaded.scenario);
+  ASSERT_EQ(differences.size(), 1u);
+  EXPECT_EQ(differences[0].boundary, "grasping(right_hand, milk)");
+  EXPECT_EQ(differences[0].how, "style: pinch -> wrap");
+}
+
 TEST(ComparisonSheet, ShowsTheScenesOfEachDifference) {
   const auto& [loaded, run] = Of("pick_and_place/milk_carton_wrap");
   const auto [golden, comparison] = GoldenLike(run, [](auto& events) {

@@ -58,6 +58,19 @@ TEST(Attribution, ToldApartInOneScenario) {
                 "sliding missing: `slide_distance` 2 cm -> 5 cm in a.grammar"}));
 }
 
+TEST(Attribution, TheShiftIsOfTheBoundaryThatIsNamedFirst) {
+  for (const auto& [begin, end, what, shift_ms] :
+       {std::tuple(25, 95, "begins later (and ends earlier)", 250.0),
+        {5, 75, "ends earlier (and begins later)", -250.0},
+        {25, 75, "begins later (and ends earlier)", 250.0}}) {
+    const Attribution told = AttributeDifferences(
+        ComparedWith({Event("reaching", begin, end), kSlide, Event("grasping", 200, 300)}), {},
+        {})[0];
+    EXPECT_EQ(told.what, what);
+    EXPECT_EQ(told.shift_ms, shift_ms);
+  }
+}
+
 TEST(Attribution, TwoParametersTogether) {
   const auto both_needed = [](const std::vector<const SettingChange*>& undone) {
     return std::optional(undone.size() == 2

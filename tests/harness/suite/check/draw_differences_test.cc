@@ -75,6 +75,20 @@ TEST_F(DrawDifferencesTest, ABoundaryIsShownAtBothTimes) {
   EXPECT_TRUE(moments[0].in_golden && moments[0].in_run);
 }
 
+TEST_F(DrawDifferencesTest, BothBoundariesOfAnEventMayDiffer) {
+  const auto moments = Draw({.agreement = truth::LineVerdict::kShifted,
+                             .expected = Near(96, 240),
+                             .actual = Near(192, 144),
+                             .begin_offset = 96,
+                             .end_offset = -96,
+                             .tolerance = 4});
+  ASSERT_EQ(moments.size(), 2u);
+  EXPECT_EQ(moments[0].what, "begin of near(left, cup)");
+  EXPECT_EQ(moments[1].what, "end of near(left, cup)");
+  EXPECT_EQ(moments[1].expected.caption, "golden: 0.5000 s");
+  EXPECT_EQ(moments[1].recognised.caption, "recognised: 0.3000 s");
+}
+
 TEST_F(DrawDifferencesTest, AnEventThatOnlyOneSideHasIsShownWhereItBegins) {
   const auto missing = Draw({.agreement = truth::LineVerdict::kMissing, .expected = Near(96, 240)});
   ASSERT_EQ(missing.size(), 1u);
