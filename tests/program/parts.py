@@ -101,6 +101,8 @@ def suite(folder):
     all_ = folder / "all.episodes"
     run("episode", "merge", *part[1:], "-o", all_, "--expect", 3)
     assert all_.read_bytes() == (folder / "one.episodes").read_bytes()
+    import many_episodes  # needs python3-xxhash
+
     foreign = folder / "foreign.episodes"  # of somebody who keeps notes in the file
     shutil.copyfile(part[1], foreign)
     with sqlite3.connect(foreign) as database:
