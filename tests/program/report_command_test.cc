@@ -44,6 +44,11 @@ TEST_F(ReportCommand, RefusesWhatSelectsNothing) {
   EXPECT_TRUE(Has(nothing.err, "--episode: no episode matches 'slide/*'")) << nothing.err;
   EXPECT_FALSE(std::filesystem::exists(root_ / "page.html"));
   EXPECT_EQ(Do("report " + Path("a.episodes") + " -o /proc/none/page.html").exit_code, 2);
+  const Said unread =
+      Do("report " + Path("a.episodes") + " --set nosuch=1 -o " + Path("page.html"));
+  EXPECT_EQ(unread.exit_code, 2);
+  EXPECT_TRUE(Has(unread.err, "the grammar has no parameter 'nosuch'")) << unread.err;
+  EXPECT_FALSE(std::filesystem::exists(root_ / "page.html"));
 }
 
 TEST_F(ReportCommand, ARunIsAPage) {
@@ -61,6 +66,9 @@ TEST_F(ReportCommand, ARunIsAPage) {
   const std::string passed = PageAfter("run carton_rests --report " + Path("page.html"));
   EXPECT_TRUE(Has(passed, "<span class=\"passed\">passed</span>")) << "judged as by check";
   EXPECT_EQ(Do("run carton_rests --trials 2 --report " + Path("page.html")).exit_code, 2);
+  EXPECT_EQ(Do("run carton_rests --trials 2 --record " + Path("b.episodes")).exit_code, 2)
+      << "it has no outcomes";
+  EXPECT_FALSE(std::filesystem::exists(root_ / "b.episodes"));
 }
 
 }  // namespace

@@ -391,6 +391,9 @@ ExitCode RunReport(const ParsedOptions& options, const CommandContext& context) 
   std::vector<suite::ScenarioVerdict> verdicts =
       VerdictsOf(episode::EpisodesOf(takes), options.Text("--grammar"), true, options, context);
   for (const suite::ScenarioVerdict& verdict : verdicts) context.err << verdict.warnings;
+  // A grammar or parameter that no episode can be judged with: there is nothing to show.
+  const auto is_unread = [](auto& verdict) { return verdict.exit_code == ExitCode::kBadInput; };
+  if (std::ranges::all_of(verdicts, is_unread)) return ComplainOfUnread(verdicts, context);
   suite::ReportHeader header =
       suite::HeaderOf(CommandText(context.words), context.root, context.today);
   header.title = "Recorded episodes";

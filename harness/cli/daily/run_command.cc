@@ -82,6 +82,8 @@ Result<std::map<int, episode::TrialResult>> KnownTrials(const std::string& file,
 
 ExitCode CountTrials(const ParsedOptions& options, const episode::RunRequest& request,
                      const std::string& id, const CommandContext& context) {
+  const grammar::Diagnostics why_not = episode::WhyNotTried(request, context.root);
+  if (!why_not.empty()) return Complain(context, why_not);
   const episode::Plan plan = PlanOfTrials(options, request, id, context);
   const auto all = std::ranges::count(plan.owed, plan.number, &episode::Plan::Owed::part);
   episode::TrialSettings settings{.count = options.IntOr("--trials", 1),

@@ -195,18 +195,22 @@ Result<RunRequest> RequestOfTrial(const RunRequest& request, const std::string& 
   return WithDraws(request, nominal, trial);
 }
 
+grammar::Diagnostics WhyNotTried(const RunRequest& request, const std::string& root) {
+  TrialLoader loader{root};
+  const Result<LoadedRun> nominal = LoadNominal(request, loader);
+  if (!nominal) return nominal.error();
+  if (!nominal->scenario.outcomes.empty()) return {};
+  return {grammar::DiagnosticAt(request.scenario_file, "", {1, 1},
+                                "the scenario has no outcomes, so its trials cannot be classified",
+                                "outcomes: {lifted: [{entity: milk, above_m: 0.9}]}")};
+}
+
 Result<TrialReport> RunTrials(const RunRequest& request, const std::string& root,
                               const TrialSettings& settings,
                               const std::function<void(int done)>& progress) {
   TrialLoader loader{root};
   PREHEND_TRY(const LoadedRun nominal, LoadNominal(request, loader));
   const scenario::Scenario& scenario = nominal.scenario;
-  if (scenario.outcomes.empty()) {
-    return tl::unexpected(grammar::Diagnostics{
-        grammar::DiagnosticAt(request.scenario_file, "", {1, 1},
-                              "the scenario has no outcomes, so its trials cannot be classified",
-                              "outcomes: {lifted: [{entity: milk, above_m: 0.9}]}")});
-  }
   std::vector<WorkerJob> jobs;
   TrialReport report;
   for (int trial = settings.part; trial <= settings.count; trial += settings.parts) {

@@ -74,8 +74,10 @@ struct TrialReport {
   std::vector<TrialResult> results;   ///< trial 1, 2, ...; of a part, its own
 };
 
-/// Runs the trials 1 .. count of a scenario, or a part of them. A scenario without outcomes is an
-/// error.
+/// Why no trial of it can be played and classified; to be asked before anything is written.
+grammar::Diagnostics WhyNotTried(const RunRequest& request, const std::string& root);
+
+/// Runs the trials 1 .. count of a scenario, or a part of them.
 Result<TrialReport> RunTrials(const RunRequest& request, const std::string& root,
                               const TrialSettings& settings,
                               const std::function<void(int done)>& progress = {});
