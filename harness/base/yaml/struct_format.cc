@@ -252,9 +252,11 @@ bool StructRules::CheckKeys(const YamlNode& node, DiagnosticList& errors) const 
 
 ErasedFormat FormatOf(const StructRules& rules) {
   const auto shared = std::make_shared<const StructRules>(rules);
-  return {.schema = [shared] { return shared->MakeSchema(); },
-          .read = [shared](const YamlNode& node, DiagnosticList& errors,
-                           void* value) { return shared->Read(node, errors, value); }};
+  ErasedFormat format{.schema = [shared] { return shared->MakeSchema(); },
+                      .read = [shared](const YamlNode& node, DiagnosticList& errors,
+                                       void* value) { return shared->Read(node, errors, value); }};
+  for (const Field& field : rules.fields) format.keys.push_back(field.key);
+  return format;
 }
 
 ErasedFormat ErasedByKey(const std::string& noun,

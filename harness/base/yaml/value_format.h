@@ -64,7 +64,8 @@ struct ErasedFormat {
 
   Schema schema;
   Read read;
-  Show show = {};  ///< may be empty
+  Show show = {};                      ///< may be empty
+  std::vector<std::string> keys = {};  ///< of a mapping whose fields are known
 };
 
 /// Holds an erased format. Its special members are compiled once, not wherever a field is declared.

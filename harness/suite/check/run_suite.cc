@@ -99,7 +99,6 @@ class Suite {
         groups.emplace_back();
       groups.back().push_back(turn);
     }
-    (void)episode::IsFieldOfScenario("");  // the table of fields, once for all processes
     std::vector<WorkerJob> jobs;
     for (const std::vector<Turn>& group : groups) jobs.push_back(JobOf(group));
     const auto take = [&](std::size_t job, const WorkerResult& result) {
