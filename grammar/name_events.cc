@@ -15,7 +15,6 @@ Timeline NameEvents(const Program& program, const EntityTable& entity_table,
   for (const Event& event : events) {
     const Rule& rule = program.rules[event.rule];
     NamedEvent named{.event = rule.name,
-                     .roles = {},
                      .interval = event.interval,
                      .decided = event.decided,
                      .open_end = event.open_end};

@@ -54,10 +54,7 @@ class Compiler {
     CheckDefines();
     LowerAll();
     if (diagnostics_.empty()) Order();
-    if (!diagnostics_.empty())
-      return {.program = nullptr,
-              .diagnostics = InOrder(std::move(diagnostics_), symbols_),
-              .warnings = {}};
+    if (!diagnostics_.empty()) return {.diagnostics = InOrder(std::move(diagnostics_), symbols_)};
     RequireSight(program_);
     ChooseGuards(program_);
     warnings_ = std::move(symbols_.warnings);
@@ -65,7 +62,6 @@ class Compiler {
     program_.warnings = warnings_;
     CheckIds(program_);
     return {.program = std::make_shared<const Program>(std::move(program_)),
-            .diagnostics = {},
             .warnings = std::move(warnings_)};
   }
 
@@ -181,6 +177,7 @@ class Compiler {
     const auto found = symbols_.params.find(setting.name);
     const bool is_own =
         found != symbols_.params.end() && program_.params[found->second].file == source.text.file;
+    if (found == symbols_.params.end() && symbols_.IsExcused(setting.name)) return;
     if (found == symbols_.params.end() || is_own) {
       std::vector<std::string> names;
       for (const auto& [name, index] : symbols_.params) {
@@ -214,6 +211,7 @@ class Compiler {
       };
       const auto found = symbols_.params.find(name);
       if (found == symbols_.params.end()) {
+        if (symbols_.IsExcused(name)) continue;
         std::vector<std::string> names;
         for (const auto& [known, index] : symbols_.params) names.push_back(known);
         complain("the grammar has no parameter '" + name + "'", DidYouMean(name, names));
@@ -240,11 +238,6 @@ class Compiler {
                               .of_form = TouchingRule()});
     for (const Source& source : sources_) {
       for (const Definition& definition : source.file.definitions) CollectHead(source, definition);
-    }
-    if (program_.rules.size() == 1 && diagnostics_.empty()) {
-      Complain(sources_.back(), {1, 1}, "the grammar defines no event",
-               "for example: event held(hand: Hand, "
-               "object: Thing) while sensor_sets(hand, object) >= 2");
     }
   }
 
@@ -403,20 +396,14 @@ class Compiler {
   void CheckDefines() {
     Program scratch = program_;
     for (const auto& [name, source] : symbols_.defines) {
-      Symbols symbols{scratch,
-                      symbols_.rules,
-                      symbols_.params,
-                      symbols_.files,
-                      symbols_.defines,
-                      {},
-                      {},
-                      {},
-                      {},
-                      {},
-                      {},
-                      symbols_.broken,
-                      symbols_.is_incomplete,
-                      symbols_.who_defines};
+      Symbols symbols{.program = scratch,
+                      .rules = symbols_.rules,
+                      .params = symbols_.params,
+                      .files = symbols_.files,
+                      .defines = symbols_.defines,
+                      .broken = symbols_.broken,
+                      .is_incomplete = symbols_.is_incomplete,
+                      .who_defines = symbols_.who_defines};
       scratch.rules.resize(program_.rules.size());
       scratch.nodes.clear();
       const RuleId body = scratch.rules.push_back({});
@@ -430,6 +417,7 @@ class Compiler {
       }
       Lowering(symbols, body, *source.text, diagnostics_).Check(source);
       symbols_.used_params.merge(symbols.used_params);
+      symbols_.broken.merge(symbols.broken);
       if (diagnostics_.size() != before) symbols_.broken.insert(name);
     }
     std::erase_if(symbols_.defines,
@@ -490,6 +478,11 @@ class Compiler {
         std::optional<Law> law = LowerLaw(symbols_, source.text, written, diagnostics_);
         if (law) program_.laws.push_back(std::move(*law));
       }
+    }
+    if (program_.rules.size() == 1 && diagnostics_.empty()) {
+      Complain(sources_.back(), {1, 1}, "the grammar defines no event",
+               "for example: event held(hand: Hand, "
+               "object: Thing) while sensor_sets(hand, object) >= 2");
     }
   }
 

@@ -49,12 +49,21 @@ bool IsOverInterval(std::string_view name) {
   return std::ranges::count(SignalsOverIntervals(), name, &OverInterval::name) > 0;
 }
 
-Diagnostic Symbols::Unknown(std::string_view what, std::string_view name, std::string hint) const {
-  if (is_incomplete || broken.contains(name)) return {};
+Diagnostic Symbols::Unknown(std::string_view what, std::string_view name, std::string hint) {
+  if (IsExcused(name)) return {};
+  broken.emplace(name);
   const std::string owner = who_defines ? who_defines(name) : "";
   if (const std::string_view habit = HabitHint(name); !habit.empty()) hint = habit;
   if (!owner.empty()) hint = "it is in a grammar of the library: use " + owner;
   return {.message = "unknown " + std::string(what) + " " + Quoted(name), .hint = std::move(hint)};
+}
+
+std::string Symbols::NotOfClass(std::string_view callee, std::string_view wanted,
+                                std::string_view role, std::string_view class_name) {
+  for (const std::string_view name : {class_name, wanted})
+    if (!IsBuiltinClass(name) && !broken.emplace(name).second) return {};
+  return Quoted(callee) + " takes " + WithArticle(wanted) + " here, but " + Quoted(role) + " is " +
+         WithArticle(class_name);
 }
 
 bool Symbols::IsParamIn(std::string_view file, std::string_view name) const {
@@ -241,8 +250,9 @@ std::vector<std::string> Lowering::KnownNames(bool calls) const {
     for (const auto& [name, define] : symbols_.defines) names.push_back(name);
     for (const Operator& builtin : Operators()) names.emplace_back(builtin.name);
     for (const OverInterval& signal : SignalsOverIntervals()) names.emplace_back(signal.name);
-    names.emplace_back("is");
+    names.insert(names.end(), {"is", "not", "known"});
   } else {
+    names = {"any", "drop"};
     for (const auto& [name, param] : symbols_.params) names.push_back(name);
     for (const auto& [name, define] : symbols_.defines) names.push_back(name);
     if (scope_ != nullptr) {
@@ -351,6 +361,7 @@ Lowering::Typed Lowering::LowerName(const Expr& expr) {
     return Bad(expr.place, "'any' stands only for a role of an event or condition",
                "for example: supported_by(object, any)");
   }
+  if (unknown_roles_.contains(expr.text)) return Bad(expr.place, "");
   const bool is_call = FindBuiltin(expr.text) != nullptr || symbols_.rules.contains(expr.text);
   const Diagnostic unknown = symbols_.Unknown("name", expr.text,
                                               is_call ? "name the entity: " + expr.text + "(object)"

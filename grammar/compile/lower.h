@@ -4,6 +4,7 @@
 // tests/grammar/compile/compile_test.cc
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <optional>
@@ -49,8 +50,18 @@ struct Symbols {
   bool is_incomplete = false;                                     ///< so may every unknown name be
   std::function<std::string(std::string_view)> who_defines = {};  ///< a grammar to `use`, or ""
 
-  /// What to say of a name that nobody knows; no message: nothing.
-  Diagnostic Unknown(std::string_view what, std::string_view name, std::string hint) const;
+  /// That a name is unknown is no mistake; a head without its '(' is broken as one longer name.
+  bool IsExcused(std::string_view name) const {
+    return is_incomplete || std::ranges::any_of(broken, [&](const std::string& wrong) {
+             return wrong.find(name) != std::string::npos;
+           });
+  }
+  /// What to say of a name that nobody knows, once; no message: nothing.
+  Diagnostic Unknown(std::string_view what, std::string_view name, std::string hint);
+  /// What to say of a role whose class does not fit; nothing, if one of the two classes is not
+  /// built in, perhaps misspelt, and it was told of it before.
+  std::string NotOfClass(std::string_view callee, std::string_view wanted, std::string_view role,
+                         std::string_view class_name);
   /// A parameter of this file or of one that it uses; another file's may be called like something
   /// of its own.
   bool IsParamIn(std::string_view file, std::string_view name) const;
@@ -237,6 +248,7 @@ class Lowering {
   std::vector<VacuousPart> vacuous_parts_;
   const Scope* scope_ = nullptr;
   std::vector<bool> role_used_;
+  std::set<std::string, std::less<>> unknown_roles_;  ///< each is told once
 };
 
 /// One definition, its form and modifiers: fills in program.rules[index], whose head is there

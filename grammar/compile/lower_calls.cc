@@ -49,19 +49,19 @@ std::optional<int> Lowering::RoleArgument(const Expr& expr, std::string_view wan
                "for example: contact(object, any), with `use contact`");
       return std::nullopt;
     }
-    std::vector<std::string> names;
+    const bool is_told = is_name && (symbols_.broken.contains(expr.text) ||
+                                     !unknown_roles_.insert(expr.text).second);
+    std::vector<std::string> names = {"any"};
     for (const RuleRole& known : rule().roles) names.push_back(known.name);
     const std::string found = is_name ? ", and there is no role " + Quoted(expr.text) : "";
-    Complain(expr.place, Quoted(callee) + " takes a role here" + found,
+    Complain(expr.place, is_told ? "" : Quoted(callee) + " takes a role here" + found,
              is_name ? DidYouMean(expr.text, names, HabitHint("role")) : "");
     return std::nullopt;
   }
   role_used_[role] = true;
   const std::string& class_name = rule().roles[role].class_name;
   if (!ClassesMeet(class_name, wanted_class)) {
-    Complain(expr.place,
-             Quoted(callee) + " takes " + WithArticle(wanted_class) + " here, but " +
-                 Quoted(expr.text) + " is " + WithArticle(class_name),
+    Complain(expr.place, symbols_.NotOfClass(callee, wanted_class, expr.text, class_name),
              wanted_class == "Jointed"
                  ? "what hangs on a slider or a hinge is Jointed: " + expr.text + ": Jointed"
                  : DidYouMean(class_name, {std::string(wanted_class)}));

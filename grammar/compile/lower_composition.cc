@@ -44,9 +44,10 @@ class CompositionLowering {
     Composition().count = static_cast<int>(labels.size());
     Composition().hull = d_.all_of;
     Composition().first = d_.first_of_equals;
+    std::set<std::string> unknown;
     const auto find = [&](const std::string& label, Place place) {
       const auto found = std::ranges::find(labels, label);
-      if (found == labels.end())
+      if (found == labels.end() && unknown.insert(label).second)
         lowering_.Complain(place, "no part is labelled '" + label + "'", DidYouMean(label, labels));
       return static_cast<int>(found - labels.begin());
     };

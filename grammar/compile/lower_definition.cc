@@ -32,7 +32,8 @@ class DefinitionLowering {
   }
 
  private:
-  // Lowering may add rules, so the rule is looked up again after each step.
+  // Lowering may add rules, so the rule is looked up after each step, the right side of a '='
+  // first.
   Rule& Here() { return program_.rules[index_]; }
   template <typename Part>
   Part& As() {
@@ -54,8 +55,7 @@ class DefinitionLowering {
       case Form_::kUntilSince:
         return LowerUntilSince();
       case Form_::kRestOf: {
-        const int whole = lowering_.RuleCall(d_.first);
-        As<RestOfRule>().whole = whole;
+        As<RestOfRule>().whole = lowering_.RuleCall(d_.first);
         for (const ast::Expr& other : d_.outside) {
           const int reference = lowering_.RuleCall(other);
           As<RestOfRule>().outside.push_back(reference);
@@ -89,12 +89,9 @@ class DefinitionLowering {
               WithArticle(roles.front().class_name),
           "define such events, or say what must not hold: while not X");
     }
-    const NodeId none = lowering_.Truth({.kind = ast::Expr::Kind::kUnary,
-                                         .place = d_.place,
-                                         .text = "not",
-                                         .quantity = {},
-                                         .args = {AnyOf(calls)}},
-                                        {});
+    const NodeId none = lowering_.Truth(
+        {.kind = ast::Expr::Kind::kUnary, .place = d_.place, .text = "not", .args = {AnyOf(calls)}},
+        {});
     As<WhileRule>() = {.condition = none};
   }
 
@@ -102,17 +99,11 @@ class DefinitionLowering {
   void AddCalls(const Rule& event, std::vector<int> plays, const std::vector<RuleRole>& roles,
                 std::size_t role, std::vector<ast::Expr>& calls) {
     if (role == roles.size()) {
-      ast::Expr call{.kind = ast::Expr::Kind::kCall,
-                     .place = d_.place,
-                     .text = event.name,
-                     .quantity = {},
-                     .args = {}};
+      ast::Expr call{.kind = ast::Expr::Kind::kCall, .place = d_.place, .text = event.name};
       for (const int who : plays) {
         call.args.push_back({.kind = ast::Expr::Kind::kName,
                              .place = d_.place,
-                             .text = who == kNone ? "any" : roles[who].name,
-                             .quantity = {},
-                             .args = {}});
+                             .text = who == kNone ? "any" : roles[who].name});
       }
       return calls.push_back(std::move(call));
     }
@@ -128,11 +119,8 @@ class DefinitionLowering {
 
   static ast::Expr AnyOf(const std::vector<ast::Expr>& calls) {
     if (calls.size() == 1) return calls.front();
-    return {.kind = ast::Expr::Kind::kChain,
-            .place = calls.front().place,
-            .text = "or",
-            .quantity = {},
-            .args = calls};
+    return {
+        .kind = ast::Expr::Kind::kChain, .place = calls.front().place, .text = "or", .args = calls};
   }
 
   void LowerRepeat() {
@@ -175,7 +163,7 @@ class DefinitionLowering {
       lowering_.Complain(d_.place, "without a limit, one B ends what each A began",
                          "say how long each may wait: from each A to B within 2 s");
     }
-    if (d_.within) LowerWithin(*d_.within);
+    if (d_.within) As<FromToRule>().within_s = lowering_.Span(*d_.within, "'within'");
   }
 
   // What is true at one frame, and what, negated, is not true: false, or not known.
@@ -266,20 +254,12 @@ class DefinitionLowering {
     return true;
   }
 
-  void LowerWithin(const ast::Expr& within) {
-    const double within_s = lowering_.Span(within, "'within'");
-    As<FromToRule>().within_s = within_s;
-  }
-
   void LowerUntilSince() {
-    const NodeId until = lowering_.Instant(d_.first, {});
-    const NodeId since = lowering_.Truth(d_.second, {.end = true});
-    As<UntilSinceRule>().until = until;
-    As<UntilSinceRule>().since = since;
+    As<UntilSinceRule>().until = lowering_.Instant(d_.first, {});
+    As<UntilSinceRule>().since = lowering_.Truth(d_.second, {.end = true});
     CheckSince();
     if (d_.approach) LowerApproach(*d_.approach);
-    const double back_s = lowering_.Span(d_.at_most_back, "'at most .. back'");
-    As<UntilSinceRule>().back_s = back_s;
+    As<UntilSinceRule>().back_s = lowering_.Span(d_.at_most_back, "'at most .. back'");
   }
 
   void LowerApproach(const ast::Approach& approach) {
@@ -295,6 +275,7 @@ class DefinitionLowering {
     double idle_s = -1;
     if (approach.motion)
       motion = lowering_.Signal(*approach.motion, {.end = true}, motion_dimension);
+    if (approach.motion && motion == kNone) return;
     if (approach.speed) {
       speed = lowering_.Constant(*approach.speed, motion_dimension, "'slower than'");
       idle_s = lowering_.Constant(*approach.idle, kSeconds, "'slower than .. at most'");
@@ -346,8 +327,7 @@ class DefinitionLowering {
     }
     if (d_.one_per) ShareOut(*d_.one_per);
     if (d_.lasting) {
-      const double lasting_s = lowering_.Constant(*d_.lasting, kSeconds, "'lasting'");
-      Here().lasting_s = lasting_s;
+      Here().lasting_s = lowering_.Constant(*d_.lasting, kSeconds, "'lasting'");
       CheckLasting(*d_.lasting);
     }
     if (d_.lasting_to) {
@@ -369,21 +349,15 @@ class DefinitionLowering {
           "put it into one of the parts, or into a rule that uses this one: while C(hand, cup)");
     }
     if (d_.requirement) {
-      const NodeId requirement = lowering_.Truth(*d_.requirement, {.begin = true, .end = true});
-      Here().requirement = requirement;
+      Here().requirement = lowering_.Truth(*d_.requirement, {.begin = true, .end = true});
       CheckRequirement();
     }
     if (d_.confirmed) {
-      const int by = lowering_.RuleCall(d_.confirmed->by);
-      const int within = lowering_.RuleCall(d_.confirmed->within);
-      Here().confirmed_by = by;
-      Here().confirmed_within = within;
+      Here().confirmed_by = lowering_.RuleCall(d_.confirmed->by);
+      Here().confirmed_within = lowering_.RuleCall(d_.confirmed->within);
     }
     if (d_.drawn) CheckDrawn(*d_.drawn);
-    if (d_.style) {
-      const int role = lowering_.HandRole(*d_.style);
-      Here().style_role = role;
-    }
+    if (d_.style) Here().style_role = lowering_.HandRole(*d_.style);
     LowerAttributes();
   }
 

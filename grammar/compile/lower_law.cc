@@ -119,9 +119,7 @@ class LawLowering {
     }
     const int index = static_cast<int>(role - law_.roles.begin());
     if (!ClassesMeet(role->class_name, wanted)) {
-      Complain(arg.place,
-               Quoted(expr.text) + " takes " + WithArticle(wanted) + " here, but " +
-                   Quoted(arg.text) + " is " + WithArticle(role->class_name),
+      Complain(arg.place, symbols_.NotOfClass(expr.text, wanted, arg.text, role->class_name),
                DidYouMean(role->class_name, {wanted}));
       return false;
     }

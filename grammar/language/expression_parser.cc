@@ -13,15 +13,11 @@ namespace {
 
 constexpr int kMaxDepth = 64;
 
-std::vector<Expr> Args(Expr a) {
+template <typename... Rest>
+std::vector<Expr> Args(Expr first, Rest... rest) {
   std::vector<Expr> args;
-  args.push_back(std::move(a));
-  return args;
-}
-
-std::vector<Expr> Args(Expr a, Expr b) {
-  std::vector<Expr> args = Args(std::move(a));
-  args.push_back(std::move(b));
+  args.push_back(std::move(first));
+  (args.push_back(std::move(rest)), ...);
   return args;
 }
 
@@ -55,7 +51,6 @@ Expr ExpressionParser::Make(Expr::Kind kind, Place place, std::string text,
   return {.kind = kind,
           .place = place,
           .text = std::move(text),
-          .quantity = {},
           .args = std::move(args),
           .depth = depth,
           .begin = begin,
@@ -110,20 +105,6 @@ Expr ExpressionParser::ParseSum() {
     left = Make(Expr::Kind::kBinary, op.place, op.text, Args(std::move(left), ParseProduct()));
   }
   return left;
-}
-
-Expr ExpressionParser::ParseSumBefore(std::string_view word) {
-  struct NoUnit {
-    NoUnit(ExpressionParser& parser, std::string_view word) : parser_(parser) {
-      parser_.no_unit_ = word;
-    }
-    ~NoUnit() { parser_.no_unit_ = {}; }
-    NoUnit(const NoUnit&) = delete;
-    NoUnit& operator=(const NoUnit&) = delete;
-    ExpressionParser& parser_;
-  };
-  const NoUnit no_unit(*this, word);
-  return ParseSum();
 }
 
 Expr ExpressionParser::ParseProduct() {
@@ -226,11 +207,11 @@ bool ExpressionParser::AtUnit(std::size_t ahead) const {
 }
 
 // `3 cm`, `3 cm/s`, `3/s`. A name after a number can only be a unit or the next word of the
-// language, also `one hand per object`.
+// language, also `one hand per object` and `gap at most`.
 void ExpressionParser::ParseUnit(Quantity& quantity) {
   const bool is_one_per = At("one") && Peek(1).kind == Token::Kind::kName;
   const bool starts = Peek().kind == Token::Kind::kName && !IsReserved(Peek().text) &&
-                      Peek().text != no_unit_ && !is_one_per;
+                      Peek().text != "gap" && !is_one_per && (AtUnit(0) || !BeginsLine());
   if (!starts && !(At("/") && AtUnit(1))) return;
   double si = 1;
   quantity.dimension = ParseDimension(si);
@@ -246,9 +227,9 @@ Dimension ExpressionParser::ParseDimension(double& si) {
       for (const std::string_view angle : {"deg", "rad"})
         if (Peek().text.starts_with(angle)) near = angle;
       if (Peek().text.starts_with("sec")) near = "s";
-      Fail("unknown unit '" + Peek().text + "'",
-           near.empty() ? "units are m cm mm s ms N rad deg, and their quotients like cm/s"
-                        : "did you mean '" + near + "'?");
+      const std::string message = "unknown unit '" + Peek().text + "'";
+      if (!near.empty()) FailAt(Peek().place, message, "did you mean '" + near + "'?");
+      Fail(message, "units are m cm mm s ms N rad deg, and their quotients like cm/s");
     }
     SkipOne();
     si = unit->si;

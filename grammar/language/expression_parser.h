@@ -23,8 +23,6 @@ class ExpressionParser : public TokenReader {
   ast::Expr ParsePostfix();
   ast::Expr ParsePrimary();
   Quantity ParseSignedQuantity();
-  /// A sum before a word of a form that elsewhere may be a name: it is no unit.
-  ast::Expr ParseSumBefore(std::string_view word);
   /// The dimension of `cm/s`, and of `1/s` when it stands behind a number.
   Dimension ParseDimension(double& si);
 
@@ -58,7 +56,6 @@ class ExpressionParser : public TokenReader {
     ExpressionParser& parser_;
   };
   int depth_ = 0;
-  std::string_view no_unit_;
 };
 
 // Laws and heads of the grammar language. Part of the parser. Tested by

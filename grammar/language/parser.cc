@@ -34,7 +34,8 @@ class Parser : public LawParser {
         ParseItem(file);
       } catch (const ParseStop&) {
         const std::string name = NameOfItem(start);
-        file.is_incomplete |= is_use || name.empty();
+        const bool is_head = BeginsLine() && (At(":", 3) || At(":", 4) || At("=", 1) || At("=", 2));
+        file.is_incomplete |= is_use || name.empty() || is_head;
         file.broken.insert(name);
         SkipToItem();
       }
@@ -55,14 +56,16 @@ class Parser : public LawParser {
  private:
   template <typename T>
   T Whole(T item) {
-    if (!AtEnd() && !AtItem()) FailBetween();
+    if (!AtEnd() && !AtItem()) ExpectItem();
     return item;
   }
 
-  [[noreturn]] void FailBetween() {
-    Fail("expected 'use', 'param', 'define', 'condition', 'event' or 'law', found " + Found(),
-         At(",") && Peek(1).kind == Token::Kind::kNumber ? "decimals have a point: 2.5"
-                                                         : WordHint());
+  void ExpectItem() {
+    const std::string message =
+        "expected 'use', 'param', 'define', 'condition', 'event' or 'law', found " + Found();
+    if (Correct(message)) return;
+    Fail(message, At(",") && Peek(1).kind == Token::Kind::kNumber ? "decimals have a point: 2.5"
+                                                                  : WordHint());
   }
 
   void ParseItem(ast::File& file) {
@@ -77,7 +80,7 @@ class Parser : public LawParser {
       const Place name_place = Peek().place;
       std::string name = ExpectName("a parameter's name");
       Expect("=", "a number and its unit: param " + name + " = 5 cm");
-      file.params.push_back({std::move(name), name_place, ParseSignedQuantity()});
+      file.params.push_back(Whole(ast::Param{std::move(name), name_place, ParseSignedQuantity()}));
     } else if (At("define") || At("event") || At("condition") || At("symmetric") || At("law")) {
       if (file.definitions.size() + file.defines.size() + file.laws.size() == kMaxDefinitions) {
         SkipToEnd();
@@ -94,7 +97,7 @@ class Parser : public LawParser {
       FailAt(place, "a second 'grammar' line",
              "one file holds one grammar; `use NAME` reads another one");
     } else {
-      FailBetween();
+      ExpectItem();
     }
   }
 
@@ -112,6 +115,7 @@ class Parser : public LawParser {
         use.settings.push_back(ParseSetting());
       } while (Accept(","));
     }
+    if (!At(",")) use = Whole(std::move(use));
     file.uses.push_back(std::move(use));
   }
 
@@ -365,7 +369,7 @@ class Parser : public LawParser {
     definition.repeated = ParseChoice();
     Expect("at", kExample);
     Expect("least", kExample);
-    definition.at_least = ParseSumBefore("gap");
+    definition.at_least = ParseSum();
     if (Accept("within")) {
       definition.within = ParseSum();
       return;

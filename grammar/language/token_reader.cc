@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <optional>
 
+#include "grammar/base/utf8.h"
+
 namespace prehend::grammar {
 namespace {
 
@@ -30,7 +32,9 @@ constexpr std::string_view kOrder =
 constexpr std::string_view kMoment = "a moment is E begins, or E ends";
 constexpr std::string_view kAlone = "what is true or false is not compared: F, or not F";
 constexpr std::string_view kDistance = "how far they are apart: distance(a, b) < 5 cm";
-constexpr std::array<Habit, 43> kHabits = {{
+constexpr std::string_view kQuotes = "quotes are straight: \"";
+constexpr std::string_view kBraces = "nothing stands around a definition: event e(..) while F";
+constexpr std::array<Habit, 58> kHabits = {{
     {"begin", kMoment},
     {"start", kMoment},
     {"end", kMoment},
@@ -74,6 +78,21 @@ constexpr std::array<Habit, 43> kHabits = {{
     {">", "one comparison at a time, joined by 'and': 2 cm > x and x > 1 cm"},
     {">=", "one comparison at a time, joined by 'and': 2 cm > x and x > 1 cm"},
     {"==", "one comparison at a time, joined by 'and'"},
+    {"&", "both must hold: F and G"},
+    {"!", "it must not hold: not F"},
+    {"%", "shares are plain numbers: 0.5"},
+    {"^", "units are quotients: m/s/s"},
+    {"\u2264", "'<=' compares"},
+    {"\u2265", "'>=' compares"},
+    {"\u2260", "'!=' compares"},
+    {"\u2212", "a minus is '-'"},
+    {"\u2013", "a minus is '-'"},
+    {"\u00B0", "degrees are deg: 45 deg"},
+    {"\u201C", kQuotes},
+    {"\u201D", kQuotes},
+    {"{", kBraces},
+    {"}", kBraces},
+    {";", "nothing ends a line or a definition"},
 }};
 
 bool IsItemWord(std::string_view word) {
@@ -87,29 +106,6 @@ constexpr std::size_t kMaxFileBytes = std::size_t{1} << 20;
 bool IsLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
-// Length of the UTF-8 sequence that starts at `i`, 0 if there is none (overlong forms and
-// surrogates count as none).
-std::size_t Utf8Length(std::string_view text, std::size_t i) {
-  const auto byte = [&](std::size_t k) {
-    return k < text.size() ? static_cast<unsigned char>(text[k]) : 0;
-  };
-  const auto follows = [&](std::size_t k) { return (byte(k) & 0xc0) == 0x80; };
-  const int lead = byte(i);
-  if (lead < 0x80) return 1;
-  if (lead >= 0xc2 && lead < 0xe0) return follows(i + 1) ? 2 : 0;
-  if (lead >= 0xe0 && lead < 0xf0) {
-    const bool overlong = lead == 0xe0 && byte(i + 1) < 0xa0;
-    const bool surrogate = lead == 0xed && byte(i + 1) >= 0xa0;
-    return !overlong && !surrogate && follows(i + 1) && follows(i + 2) ? 3 : 0;
-  }
-  if (lead >= 0xf0 && lead < 0xf5) {
-    const bool overlong = lead == 0xf0 && byte(i + 1) < 0x90;
-    const bool too_large = lead == 0xf4 && byte(i + 1) >= 0x90;
-    return !overlong && !too_large && follows(i + 1) && follows(i + 2) && follows(i + 3) ? 4 : 0;
-  }
-  return 0;
-}
-
 // Why this is no text, or "".
 std::string WhyNotText(std::string_view text) {
   if (text.size() > kMaxFileBytes) return "the file is larger than 1 MiB; is this a grammar?";
@@ -117,7 +113,7 @@ std::string WhyNotText(std::string_view text) {
     const auto byte = static_cast<unsigned char>(text[i]);
     if (byte < 0x20 && byte != '\n' && byte != '\r' && byte != '\t')
       return "this is a binary file, not a grammar";
-    const std::size_t length = Utf8Length(text, i);
+    const std::size_t length = Utf8Length(text.substr(i));
     if (length == 0) return "the file is not valid UTF-8 text";
     i += length;
   }
@@ -216,12 +212,12 @@ class Lexer {
       if (text().substr(at_, 2) == symbol) return Take(Token::Kind::kSymbol, 2);
     }
     if (kOneByte.find(Peek()) != std::string_view::npos) return Take(Token::Kind::kSymbol, 1);
-    const std::size_t length = Utf8Length(text(), at_);
+    const std::size_t length = Utf8Length(text().substr(at_));
     const std::string found(text().substr(at_, length));
     if (found == ".") return TakeDot();
     Complain(IsOtherBlank(found) ? "unexpected character that looks like a blank, but is none"
                                  : "unexpected character '" + found + "'",
-             HintFor(found));
+             IsOtherBlank(found) ? "separate with plain spaces" : std::string(HabitHint(found)));
     while (text().substr(at_, length) == found) at_ += length;  // `&&` is one mistake
     if (!IsOtherBlank(found) && found != ";") Take(Token::Kind::kBad, 0);
   }
@@ -245,26 +241,6 @@ class Lexer {
   static bool IsOtherBlank(std::string_view found) {
     return found == "\u00A0" || found == "\u2007" || found == "\u202F" || found == "\u3000" ||
            found == "\u200B" || found == "\uFEFF";
-  }
-
-  /// What it means in other languages.
-  static std::string HintFor(std::string_view found) {
-    if (found == "&") return "both must hold: F and G";
-    if (found == "|") return "one of them must hold: F or G";
-    if (found == "!") return "it must not hold: not F";
-    if (found == "%") return "shares are plain numbers: 0.5";
-    if (found == "^") return "units are quotients: m/s/s";
-    if (found == "\u2264") return "'<=' compares";
-    if (found == "\u2265") return "'>=' compares";
-    if (found == "\u2260") return "'!=' compares";
-    if (found == "\u2212" || found == "\u2013") return "a minus is '-'";
-    if (found == "\u00B0") return "degrees are deg: 45 deg";
-    if (IsOtherBlank(found)) return "separate with plain spaces";
-    if (found == "\u201C" || found == "\u201D") return "quotes are straight: \"";
-    if (found == "{" || found == "}")
-      return "nothing stands around a definition: event e(..) while F";
-    if (found == ";") return "nothing ends a line or a definition";
-    return {};
   }
 
   void Complain(std::string message, std::string hint = {}, std::optional<Place> place = {}) {
@@ -295,7 +271,12 @@ bool IsReserved(std::string_view word) {
 }
 
 TokenReader::TokenReader(const GrammarText& grammar, Diagnostics& diagnostics)
-    : grammar_(grammar), diagnostics_(diagnostics), tokens_(Tokenize(grammar, diagnostics)) {}
+    : grammar_(grammar), diagnostics_(diagnostics), tokens_(Tokenize(grammar, diagnostics)) {
+  for (std::size_t i = 0; i + 1 < tokens_.size(); ++i) {
+    const std::string& next = tokens_[i + 1].text;
+    if (next == ":" || next == "(" || next == "=") named_.insert(tokens_[i].text);
+  }
+}
 
 const Token& TokenReader::Peek(std::size_t ahead) const {
   return tokens_[std::min(at_ + ahead, tokens_.size() - 1)];
@@ -330,6 +311,12 @@ std::string TokenReader::Found() const {
 }
 
 void TokenReader::Fail(std::string message, std::string hint) {
+  std::string word = MeantWord(at_);
+  if (word.empty() && at_ > 0 && Peek().kind == Token::Kind::kName)
+    word = MeantWord(at_ - 1, "not");
+  if (HabitHint(Peek().text) == kMoment) hint = kMoment;
+  if (!word.empty()) hint = "did you mean '" + word + "'?";
+  if (At(",") || At(")")) hint = BracketHint(std::move(hint));
   FailAt(Peek().place, std::move(message), std::move(hint));
 }
 
@@ -339,14 +326,58 @@ void TokenReader::Complain(Place place, std::string message, std::string hint) {
       DiagnosticAt(grammar_.file, grammar_.text, place, std::move(message), std::move(hint)));
 }
 
+// What is nearly this or another word of the language, and the name of nothing in this file; or
+// such a word and the next one without a blank.
+std::string TokenReader::MeantWord(std::size_t at, std::string_view wanted) const {
+  const std::string& found = tokens_[at].text;
+  if (tokens_[at].kind != Token::Kind::kName || IsReserved(found)) return {};
+  std::vector<std::string> words = {std::string(wanted.empty() ? kItemWords[0] : wanted)};
+  words.insert(words.end(), kItemWords.begin(), kItemWords.end());
+  words.insert(words.end(), kOtherWords.begin(), kOtherWords.end());
+  const bool is_named = named_.contains(found);
+  for (const std::string& word : words) {
+    if (!found.starts_with(word) || found == word) continue;
+    const std::string rest = found.substr(word.size());
+    const bool is_head = is_named && word.size() > 2 && rest[0] != '_';
+    if (is_head || IsReserved(rest) || named_.contains(rest)) return word + " " + rest;
+  }
+  words.insert(words.end(), {"over", "onset", "one", "gap", "nearest", "lies", "all", "begin",
+                             "phase", "grasp", "support"});
+  const bool is_right = is_named || std::ranges::count(words, found) > 0;
+  return is_right || !HabitHint(found).empty() ? "" : NearestName(found, words);
+}
+
+// It is read as what was meant, so that nothing but this is told of it.
+bool TokenReader::Correct(const std::string& message, std::string_view wanted) {
+  const std::string meant = MeantWord(at_, wanted);
+  if (wanted.empty() ? !IsItemWord(meant) : meant != wanted) return false;
+  Complain(Peek().place, message, "did you mean '" + meant + "'?");
+  tokens_[at_].text = meant;
+  return true;
+}
+
+std::string TokenReader::BracketHint(std::string otherwise) const {
+  std::size_t i = at_;
+  while (i > 0 && !IsItemWord(tokens_[i].text)) --i;
+  for (int open = 0; ++i < tokens_.size() && !IsItemWord(tokens_[i].text);) {
+    open += tokens_[i].text == "(" ? 1 : tokens_[i].text == ")" ? -1 : 0;
+    if (open < 0)
+      return "the ')' in line " + std::to_string(tokens_[i].place.line) + ", column " +
+             std::to_string(tokens_[i].place.column) + " has no '(' before it";
+  }
+  return otherwise;
+}
+
 void TokenReader::FailAt(Place place, std::string message, std::string hint) {
   if (Peek().kind != Token::Kind::kBad) Complain(place, std::move(message), std::move(hint));
   throw ParseStop{};
 }
 
 void TokenReader::Expect(std::string_view text, std::string hint) {
-  if (!Accept(text))
-    Fail("expected '" + std::string(text) + "', found " + Found(), std::move(hint));
+  if (Accept(text)) return;
+  const std::string message = "expected '" + std::string(text) + "', found " + Found();
+  if (!Correct(message, text)) Fail(message, std::move(hint));
+  SkipOne();
 }
 
 // Where the line does not show the bracket, or what is missing may be missing anywhere, its place
@@ -372,8 +403,7 @@ std::string TokenReader::ExpectName(std::string_view what) {
              : "");
   if (!IsReserved(Peek().text)) return Take().text;
   // What begins a line goes on there with the next item; else the word was meant as a name.
-  const bool begins_line = at_ == 0 || tokens_[at_ - 1].place.line != Peek().place.line;
-  if (begins_line && AtItem())
+  if (BeginsLine() && AtItem())
     Fail("expected " + std::string(what) + ", found " + Found(),
          "what stands in front of it is not complete");
   const Token word = Take();
@@ -394,10 +424,11 @@ std::string TokenReader::WordHint(bool is_form) const {
   const bool is_before = std::ranges::count(kBeforeTests, before) > 0;
   if (const std::string_view habit = HabitHint(is_before ? before : found); !habit.empty())
     return std::string(habit);
-  std::vector<std::string> words(kItemWords.begin(), kItemWords.end());
-  words.insert(words.end(), kOtherWords.begin(), kOtherWords.end());
-  const std::string near = NearestName(Peek().text, words);
-  return near.empty() || near == Peek().text ? std::string() : "did you mean '" + near + "'?";
+  return {};
+}
+
+bool TokenReader::BeginsLine() const {
+  return at_ == 0 || tokens_[at_ - 1].place.line != Peek().place.line;
 }
 
 bool TokenReader::AtItem() const {
@@ -417,11 +448,7 @@ std::string TokenReader::NameOfItem(std::size_t position) const {
 
 std::vector<Token> Tokenize(const GrammarText& grammar, Diagnostics& diagnostics) {
   if (std::string why = WhyNotText(grammar.text); !why.empty()) {
-    diagnostics.push_back({.file = grammar.file,
-                           .place = {},
-                           .message = std::move(why),
-                           .source_line = {},
-                           .hint = {}});
+    diagnostics.push_back({.file = grammar.file, .message = std::move(why)});
     return {Token{}};
   }
   return Lexer(grammar, diagnostics).Run();

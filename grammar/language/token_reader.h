@@ -3,6 +3,8 @@
 // parser. Tested by tests/grammar/language/parser_test.cc
 #pragma once
 
+#include <functional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -60,8 +62,12 @@ class TokenReader {
   void ExpectToClose(const Token& bracket);
   std::string ExpectName(std::string_view what);
   /// How it is said here, or where a form must begin, when the next token is a word of other
-  /// languages; "did you mean 'event'?" when it is nearly one of this language.
+  /// languages.
   std::string WordHint(bool is_form = false) const;
+  /// Whether the next token is nearly the word that is wanted, or one that begins an item: that is
+  /// told, and it is read as the word.
+  bool Correct(const std::string& message, std::string_view wanted = {});
+  bool BeginsLine() const;
   bool AtItem() const;
   void SkipToItem();
   std::size_t Position() const { return at_; }
@@ -70,9 +76,14 @@ class TokenReader {
   void SkipToEnd() { at_ = tokens_.size() - 1; }
 
  private:
+  std::string MeantWord(std::size_t at, std::string_view wanted = {}) const;
+  /// The next ')' that closes nothing, if there is one.
+  std::string BracketHint(std::string otherwise) const;
+
   const GrammarText& grammar_;
   Diagnostics& diagnostics_;
   std::vector<Token> tokens_;
+  std::set<std::string, std::less<>> named_;  ///< what stands before a ':', a '(' or a '='
   std::size_t at_ = 0;
 };
 
