@@ -243,7 +243,14 @@ void RuleInstances::LinkToGuard(InstanceId index, Guard guard) {
   const Rule& rule = program_.rules[instance.rule];
   if (rule.form() == Form::kAny) {
     std::vector<InstanceId>& members = instance.As<AnyState>().members;
-    if (std::find(members.begin(), members.end(), guard.instance) != members.end()) return;
+    // `any Hand` of a symmetric event: whichever way round, it is one binding.
+    const bool is_narrowed =
+        rule.As<AnyRule>().one == kNone && program_.rules[instances_[guard.instance].rule].hidden;
+    const auto counted = [&](InstanceId member) {
+      const RuleInstance& one = instances_[member];
+      return is_narrowed ? Referred(one, 0).entities : one.entities;
+    };
+    if (std::ranges::count(members, counted(guard.instance), counted) > 0) return;
     members.push_back(guard.instance);
     instances_[guard.instance].watchers.push_back(
         {.instance = index, .kind = Watcher::Kind::kGuard});

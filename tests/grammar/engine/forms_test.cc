@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Deadlines, attributes, definitions and sensor sets on frames written by hand;
 // tests/grammar/reference/reference_test.cc has the meaning of the forms on many streams.
+#include <algorithm>
+
 #include "tests/grammar/scene.h"
 
 namespace prehend::grammar {
@@ -106,6 +108,35 @@ std::string Drummed(const std::string& text, const std::vector<Interval>& touche
              std::to_string(static_cast<int>(event.attributes[0])) + " ";
   }
   return found;
+}
+
+// One binding of a symmetric event is one, whichever way round its classes are named, and again
+// after it has rested.
+TEST(Forms, APairOfNamedClassesIsCountedOnce) {
+  const auto found = [](const std::string& counted) {
+    Scene scene;
+    scene.entity_table.entities[Scene::kTray].classes.push_back("Tray");
+    const std::shared_ptr<const Program> program = testing::CompileText(
+        "grammar t\nsymmetric event both(a: Movable, b: Movable, h: Hand) while touching(a, h) and "
+        "touching(b, h)\nevent e(h: Hand) while " +
+        counted);
+    Monitor monitor(program, scene.entity_table);
+    std::vector<Event> events;
+    for (Tick tick = 0; tick < 1000; tick += 10) {
+      scene.touches = {{.a = Scene::kHand, .b = Scene::kCup}};
+      if (tick % 300 >= 200) scene.touches.push_back({.a = Scene::kHand, .b = Scene::kTray});
+      monitor.Advance(scene.At(tick), events);
+    }
+    monitor.Finish(1000, events);
+    return std::ranges::count_if(
+        events, [&](const Event& event) { return program->rules[event.rule].name == "e"; });
+  };
+  for (const std::string pair :
+       {"any, any", "any, any Movable", "any Movable, any", "any Tray, any", "any, any Tray"}) {
+    EXPECT_EQ(found("at least 1 of both(" + pair + ", h)"), 3) << pair;
+    EXPECT_EQ(found("at least 2 of both(" + pair + ", h)"), 0) << pair;
+    EXPECT_EQ(found("known at least 2 of both(" + pair + ", h)"), 0) << pair;
+  }
 }
 
 TEST(Forms, RepeatCountsWhatFollowsInTime) {
