@@ -143,10 +143,9 @@ Scenario& Scenario::operator=(Scenario&& other) noexcept = default;
 Scenario::~Scenario() = default;
 
 grammar::Tick DefaultTolerance(const Scenario& scenario) {
-  const int rate_hz = scenario.scene.world.rate_hz;
+  constexpr int kFrames = 2;
   const int sensing_hz = scenario.sensing.sensing_hz;
-  const grammar::Tick ticks_per_frame = (rate_hz + sensing_hz - 1) / sensing_hz;
-  return 2 * ticks_per_frame;
+  return (kFrames * scenario.scene.world.rate_hz + sensing_hz - 1) / sensing_hz;
 }
 
 const std::vector<std::string>& CameraWords() {

@@ -228,7 +228,7 @@ Chart WithoutTwins(Chart chart, const std::string& first, const std::string& sec
 }
 
 std::string AgreementText(const truth::Comparison& comparison) {
-  Tick most = 0;
+  double most = 0;
   for (const truth::Pairing& pairing : comparison.pairings)
     most = std::max(most, pairing.tolerance);
   return fmt::format(

@@ -282,8 +282,7 @@ std::vector<NearLimitPass> NearLimitPasses(const std::vector<ScenarioVerdict>& v
     const truth::Margin* smallest = verdict.comparison->Smallest();
     if (!smallest || smallest->Left() * 10 > smallest->tolerance) continue;
     const grammar::Tick rate = verdict.comparison->ticks_per_second;
-    const double share = static_cast<double>(smallest->Left()) /
-                         static_cast<double>(std::max<grammar::Tick>(1, smallest->tolerance));
+    const double share = smallest->Left() / std::max(1.0, smallest->tolerance);
     found.emplace_back(
         share, NearLimitPass{.scenario = verdict.scenario,
                              .boundary = smallest->Boundary(),

@@ -79,7 +79,7 @@ Tick LatestDecision(const NamedEvent& event, const Timeline& timeline, const Epi
     if (wait.until_end_of.contains(other.event) && Concern(event, other))
       from = std::max(from, other.interval.end);
   }
-  return from + truth::TickAt(wait.seconds, timeline.ticks_per_second) + 2 * facts.ticks_per_frame;
+  return from + truth::TickAt(wait.seconds, timeline.ticks_per_second) + facts.two_frames;
 }
 
 void CheckLatency(const Timeline& timeline, const EpisodeFacts& facts, std::string_view name,
@@ -332,7 +332,7 @@ Findings JudgeInvariants(const CheckedRun& checked) {
   const episode::RunResult& run = checked.result;
   const scenario::Scenario& scenario = checked.loaded.scenario;
   EpisodeFacts facts{.end = run.ticks + 1};
-  facts.ticks_per_frame = scenario::DefaultTolerance(scenario) / 2;
+  facts.two_frames = scenario::DefaultTolerance(scenario);
   facts.latency = LatencyByEvent(*checked.loaded.program);
   std::string details;
   for (const Violation& violation : CheckInvariants(run.timeline, facts))

@@ -203,8 +203,8 @@ void StorePictures(const std::string& id, const std::vector<PictureComparison>& 
 
 /// What the checkers must know besides the timeline.
 struct EpisodeFacts {
-  grammar::Tick end = 0;              ///< first tick that no longer belongs to the episode
-  grammar::Tick ticks_per_frame = 2;  ///< of sensing
+  grammar::Tick end = 0;         ///< first tick that no longer belongs to the episode
+  grammar::Tick two_frames = 4;  ///< of sensing
   std::map<std::string, grammar::Wait>
       latency;  ///< per event: what its decision may wait for after its end
 };

@@ -229,8 +229,9 @@ class Pairer {
     comparison_.pairings.push_back(std::move(pairing));
   }
 
-  Tick ToleranceOf(const GoldenEvent& line) const {
-    return line.tolerance_ms ? *line.tolerance_ms * ticks_per_second_ / 1000 : default_tolerance_;
+  double ToleranceOf(const GoldenEvent& line) const {
+    return line.tolerance_ms ? static_cast<double>(*line.tolerance_ms * ticks_per_second_) / 1000
+                             : static_cast<double>(default_tolerance_);
   }
 
   void AddOnlyExpected(LineVerdict agreement, std::size_t i) {
@@ -269,14 +270,14 @@ bool IsWholePair(const Pairing& pairing) {
 }
 
 /// Whether two boundaries changed their order, and lie clearly apart in one of the timelines.
-bool Swapped(Tick expected_gap, Tick actual_gap, Tick tolerance) {
+bool Swapped(Tick expected_gap, Tick actual_gap, double tolerance) {
   const auto sign = [](Tick gap) { return (gap > 0) - (gap < 0); };
   return sign(expected_gap) != sign(actual_gap) &&
          std::max(std::abs(expected_gap), std::abs(actual_gap)) > tolerance;
 }
 
 bool ClearlyChanged(const Pairing& p, const Pairing& q) {
-  const Tick tolerance = std::max(p.tolerance, q.tolerance);
+  const double tolerance = std::max(p.tolerance, q.tolerance);
   for (const auto of_p : {&Interval::begin, &Interval::end}) {
     for (const auto of_q : {&Interval::begin, &Interval::end}) {
       if (Swapped(p.expected->interval.*of_p - q.expected->interval.*of_q,
@@ -346,7 +347,7 @@ Json SideJson(const std::optional<grammar::NamedEvent>& event, Tick ticks_per_se
 }
 
 Json PairingJson(const Pairing& pairing, Tick ticks_per_second, std::string_view command) {
-  const auto offset_ms = [&](Tick ticks) {
+  const auto offset_ms = [&](double ticks) {
     return pairing.expected && pairing.actual ? Json(MillisecondsOf(ticks, ticks_per_second))
                                               : Json(nullptr);
   };
@@ -493,7 +494,7 @@ std::string MarginText(const Comparison& comparison) {
   if (comparison.margins.empty()) return "";
   const Margin* smallest = comparison.Smallest();
   if (!smallest) return "margin: all boundaries match exactly";
-  const auto ms = [&](Tick ticks) { return MillisecondsOf(ticks, comparison.ticks_per_second); };
+  const auto ms = [&](double ticks) { return MillisecondsOf(ticks, comparison.ticks_per_second); };
   if (smallest->Left() == 0)
     return fmt::format("passed at the limit: {} {} {:.1f} ms off (tolerance {:.1f} ms)",
                        smallest->label, smallest->at_end ? "ends" : "begins",

@@ -39,7 +39,7 @@ struct Pairing {
   std::size_t golden_line = 0;     ///< index into Golden::events; only with `expected`
   grammar::Tick begin_offset = 0;  ///< actual - expected, ticks; 0 without a partner
   grammar::Tick end_offset = 0;
-  grammar::Tick tolerance = 0;
+  double tolerance = 0;                   ///< ticks, and parts of one: 12 ms are 5.76 of 480 Hz
   std::vector<std::string> changes;       ///< "object: milk -> cup"
   std::vector<grammar::Interval> pieces;  ///< all of them, in order; only of the one with a partner
 
@@ -63,9 +63,9 @@ struct Margin {
   std::string label;  ///< "reaching(right_hand, milk)"
   bool at_end = false;
   grammar::Tick offset = 0;  ///< recognised - expected
-  grammar::Tick tolerance = 0;
+  double tolerance = 0;      ///< ticks
 
-  grammar::Tick Left() const { return tolerance - std::abs(offset); }
+  double Left() const { return tolerance - std::abs(offset); }
   std::string Boundary() const { return (at_end ? "end of " : "begin of ") + label; }
 };
 

@@ -72,8 +72,8 @@ std::string IntervalText(grammar::Interval interval, Tick ticks_per_second) {
                      SecondsText(interval.end, ticks_per_second));
 }
 
-double MillisecondsOf(Tick ticks, Tick ticks_per_second) {
-  return 1000.0 * SecondsOf(ticks, ticks_per_second);
+double MillisecondsOf(double ticks, Tick ticks_per_second) {
+  return 1000.0 * (ticks / static_cast<double>(ticks_per_second));
 }
 
 std::string ValueText(const grammar::NamedValue& value) {

@@ -29,7 +29,7 @@ grammar::Tick TickAt(double seconds, grammar::Tick ticks_per_second);
 std::string IntervalText(grammar::Interval interval, grammar::Tick ticks_per_second);
 
 /// In milliseconds.
-double MillisecondsOf(grammar::Tick ticks, grammar::Tick ticks_per_second);
+double MillisecondsOf(double ticks, grammar::Tick ticks_per_second);
 
 /// "12.5 N", "0.3"
 std::string ValueText(const grammar::NamedValue& value);

@@ -16,7 +16,8 @@ grammar::Tick ToleranceAt(int rate_hz, int sensing_hz) {
 TEST(ScenarioTolerance, IsTwoFramesInTicks) {
   EXPECT_EQ(ToleranceAt(480, 240), 4);
   EXPECT_EQ(ToleranceAt(480, 480), 2);
-  EXPECT_EQ(ToleranceAt(480, 90), 12);
+  EXPECT_EQ(ToleranceAt(480, 90), 11);  // 10.67: the next tick that is two frames later
+  EXPECT_EQ(ToleranceAt(480, 96), 10);
 }
 
 }  // namespace

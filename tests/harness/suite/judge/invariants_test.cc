@@ -39,7 +39,7 @@ Timeline PickAndPlace() {
 
 EpisodeFacts Facts() {
   return {.end = 1000,
-          .ticks_per_frame = 2,
+          .two_frames = 4,
           .latency = {{"grasping", {.seconds = 0.1}},
                       {"fixation", {.seconds = 0, .until_end_of = {"contact"}}}}};
 }

@@ -161,6 +161,20 @@ TEST(Compare, TheMarginIsThatOfTheBoundaryNearestToItsTolerance) {
   EXPECT_EQ(MarginText(CompareEvents({}, {})), "");
 }
 
+TEST(Compare, AToleranceBetweenTwoTicksIsAsItIsWritten) {
+  Golden golden{.ticks_per_second = 480};
+  golden.events.push_back({.event = Event("grasping", "cup", 100, 200), .tolerance_ms = 12});
+  const auto ends_at = [&](grammar::Tick end) {
+    return Compare(golden,
+                   {.ticks_per_second = 480, .events = {Event("grasping", "cup", 100, end)}}, 4);
+  };
+  EXPECT_EQ(MarginText(ends_at(205)), "margin: 1.6 of 12.0 ms left at end of grasping(hand, cup)");
+  EXPECT_TRUE(ends_at(205).Agrees());   // 10.4 ms
+  EXPECT_FALSE(ends_at(206).Agrees());  // 12.5 ms
+  EXPECT_NE(DifferenceText(ends_at(206), "").find("end +12.5 ms (tolerance 12.0 ms)"),
+            std::string::npos);
+}
+
 TEST(Compare, TheTextSaysWhatWhenHowMuchAndHowToSeeIt) {
   const Comparison comparison =
       CompareEvents({Event("grasping", "cup", 100, 200), Event("sliding", "cup", 150, 180)},
