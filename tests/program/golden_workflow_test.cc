@@ -52,6 +52,11 @@ TEST_F(GoldenWorkflow, WhatIsPendingIsReviewedThenAccepted) {
   EXPECT_EQ(json["pending"][0]["kind"], "changed");
 
   fs::remove(Scenario());
+  EXPECT_TRUE(
+      SaysIn(Do("review carton_rests"), "orphan  rest/carton_rests\n .* belongs to no scenario"));
+  const Said some = Do("check --no-pictures rest/carton_rests");
+  EXPECT_EQ(some.exit_code, 1) << some.out << some.err;
+  EXPECT_TRUE(SaysIn(some, "failed  rest/carton_rests  a golden without scenario\n")) << some.out;
   const Said orphans = Do("review");
   EXPECT_TRUE(SaysIn(
       orphans, "orphan  rest/carton_rests\n    the scenario of this pending golden does not exist"))

@@ -60,6 +60,8 @@ TEST_F(OwnProject, ComesFirstAndWhatShipsSecond) {
   const Said shipped = Do({"run", "milk_carton_wrap"});
   EXPECT_EQ(shipped.exit_code, 0) << shipped.err;
   EXPECT_TRUE(Has(shipped.out, "transporting")) << shipped.out;
+  EXPECT_EQ(Do({"list", "slide/*"}).exit_code, 4) << "a pattern is about what is in the project";
+  EXPECT_EQ(Do({"list", "milk_carton_wrap"}).exit_code, 0);
   WriteFile(kitchen_ / "grammars/pick_and_place.grammar",
             ReadFile(fs::path(PREHEND_SOURCE_DIR) / "grammar/library/pick_and_place.grammar") +
                 "\nevent mine(a: Movable, b: Fixed)\n  while touching(a, b)\n");

@@ -122,6 +122,8 @@ ExitCode RunScenarios(const measure::Asking& asking, const measure::ToScore& to_
   const auto selection =
       suite::SelectScenarios(options.All("names"), options.All("--filter"), context.root);
   if (!selection) return Complain(context, selection.error().exit_code, selection.error().why);
+  if (selection->scenarios.empty())
+    return Complain(context, ExitCode::kNothing, "there is only a golden, without its scenario");
   std::vector<measure::ScoreRequest> requests;
   for (const episode::ScenarioFile& file : selection->scenarios) {
     if (const std::string lack = episode::Lacks(NameOf(file), episode::Need::kGroundTruth);

@@ -516,8 +516,7 @@ tl::expected<std::vector<Review>, NoSelection> Reviews(const std::vector<std::st
       AddReviews(file, root, std::erase(pending, episode::IdOf(file)) > 0, pictures, reviews);
     }
   }
-  if (!patterns.empty()) return reviews;
-  for (const std::string& id : pending) {
+  for (const std::string& id : patterns.empty() ? pending : std::vector<std::string>()) {
     const std::string file = truth::GoldenFiles(root).PendingPath(id).string();
     reviews.push_back(
         {.id = id,

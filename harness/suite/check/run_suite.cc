@@ -305,6 +305,14 @@ bool Matches(const std::string& pattern, const episode::ScenarioFile& file) {
          fnmatch(pattern.c_str(), episode::IdOf(file).c_str(), 0) == 0;
 }
 
+/// The scenario that a golden asks for.
+episode::ScenarioFile Missing(const UnreferencedGolden& orphan) {
+  const std::size_t slash = orphan.scenario.rfind('/');
+  const bool has_skill = slash != std::string::npos;
+  return {.skill = has_skill ? orphan.scenario.substr(0, slash) : "",
+          .name = has_skill ? orphan.scenario.substr(slash + 1) : orphan.scenario};
+}
+
 /// A file that cannot be read has no tags; it is still checked when it is named.
 bool HasTag(const episode::ScenarioFile& file, const std::string& tag,
             const scenario::ScenarioLibrary& library) {
@@ -389,15 +397,19 @@ tl::expected<ScenarioSelection, NoSelection> SelectScenarios(
     const std::vector<std::string>& patterns, const std::vector<std::string>& filters,
     const std::string& root) {
   const std::vector<episode::ScenarioFile> all = episode::ListScenarios(root);
+  const std::vector<UnreferencedGolden> lost = FindUnreferencedGoldens(all, root);
   std::vector<episode::ScenarioFile> named =
       patterns.empty() ? all : std::vector<episode::ScenarioFile>();
   for (const std::string& pattern : patterns) {
     const std::size_t before = named.size();
     std::ranges::copy_if(all, std::back_inserter(named),
                          [&](const episode::ScenarioFile& file) { return Matches(pattern, file); });
-    if (named.size() > before) continue;
+    const bool is_of_golden = std::ranges::any_of(
+        lost, [&](const UnreferencedGolden& orphan) { return Matches(pattern, Missing(orphan)); });
+    if (named.size() > before || is_of_golden) continue;
     for (const episode::ScenarioFile& shipped : episode::ShippedScenarios(root))
-      if (Matches(pattern, shipped)) named.push_back(episode::ScenarioAt(all, shipped.path));
+      if (pattern == shipped.name || pattern == episode::IdOf(shipped))
+        named.push_back(episode::ScenarioAt(all, shipped.path));
     if (named.size() > before) continue;
     if (!IsFile(pattern)) return tl::unexpected(NoSelection{.why = WhyNoMatch(pattern, all)});
     const episode::EpisodeKind kind = episode::EpisodeKindOf(pattern);
@@ -431,13 +443,17 @@ tl::expected<ScenarioSelection, NoSelection> SelectScenarios(
   named.erase(std::unique(named.begin(), named.end(), same), named.end());
   const scenario::ScenarioLibrary library = episode::ProjectLibrary(root);
   ScenarioSelection selection;
-  std::ranges::copy_if(named, std::back_inserter(selection.scenarios),
-                       [&](const episode::ScenarioFile& file) {
-                         return std::ranges::all_of(filters, [&](const std::string& filter) {
-                           return PassesFilter(file, filter, library);
-                         });
-                       });
-  if (patterns.empty() && filters.empty()) selection.orphans = FindUnreferencedGoldens(all, root);
+  const auto passes = [&](const episode::ScenarioFile& file) {
+    return std::ranges::all_of(
+        filters, [&](const std::string& filter) { return PassesFilter(file, filter, library); });
+  };
+  std::ranges::copy_if(named, std::back_inserter(selection.scenarios), passes);
+  std::ranges::copy_if(
+      lost, std::back_inserter(selection.orphans), [&](const UnreferencedGolden& orphan) {
+        const episode::ScenarioFile file = Missing(orphan);
+        const auto names = [&](const std::string& pattern) { return Matches(pattern, file); };
+        return (patterns.empty() || std::ranges::any_of(patterns, names)) && passes(file);
+      });
   if (!selection.scenarios.empty() || !selection.orphans.empty()) return selection;
   std::string problem = "no scenario is selected";
   for (const std::string& filter : filters)

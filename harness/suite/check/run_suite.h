@@ -26,8 +26,7 @@ namespace prehend::suite {
 
 struct ScenarioSelection {
   std::vector<episode::ScenarioFile> scenarios;
-  std::vector<UnreferencedGolden>
-      orphans;  ///< only when neither patterns nor filters narrow the selection
+  std::vector<UnreferencedGolden> orphans;  ///< whose scenarios would be selected, too
 };
 
 /// Why nothing is selected; a file that is named and cannot be read is bad input.
@@ -36,9 +35,10 @@ struct NoSelection {
   std::string why;
 };
 
-/// `patterns` are globs over names and skill/name, or files; none means all. A scenario must pass
-/// each of `filters`, which are globs, too, or tag:NAME; with a leading '!' it must not match. If a
-/// pattern matches no scenario, or none is left, nothing is selected.
+/// `patterns` are globs over names and skill/name, or files, or names of what ships with the
+/// program; none means all. A scenario must pass each of `filters`, which are globs, too, or
+/// tag:NAME; with a leading '!' it must not match. If a pattern matches neither a scenario nor a
+/// golden without one, or none is left, nothing is selected.
 tl::expected<ScenarioSelection, NoSelection> SelectScenarios(
     const std::vector<std::string>& patterns, const std::vector<std::string>& filters,
     const std::string& root);

@@ -85,6 +85,27 @@ TEST_F(SelectScenariosTest, WhatMatchesNothingIsAProblemWithTheNearestName) {
   EXPECT_EQ(Selected({}, {"!*"}), Ids({"no scenario is selected ('prehend list' shows all)"}));
 }
 
+TEST_F(SelectScenariosTest, GoldensWithoutAScenarioAreSelectedAsItWouldBe) {
+  for (const char* id : {"slide/gone", "reach/left"})
+    EXPECT_EQ(WriteTextFile(root_ / "golden" / (std::string(id) + ".timeline"), "# scenario: x\n"),
+              "");
+  const auto orphans = [&](const Ids& patterns, const Ids& filters) {
+    const auto selection = SelectScenarios(patterns, filters, root_.string());
+    Ids ids;
+    for (const UnreferencedGolden& orphan :
+         selection ? selection->orphans : std::vector<UnreferencedGolden>())
+      ids.push_back(orphan.scenario);
+    return ids;
+  };
+  EXPECT_EQ(orphans({}, {}), Ids({"reach/left", "slide/gone"}));
+  EXPECT_EQ(orphans({"slide/*"}, {}), Ids({"slide/gone"}));
+  EXPECT_EQ(orphans({"left"}, {}), Ids({"reach/left"})) << "and no scenario";
+  EXPECT_EQ(orphans({"cup_slides"}, {}), Ids());
+  EXPECT_EQ(orphans({}, {"reach/*"}), Ids({"reach/left"}));
+  EXPECT_EQ(orphans({}, {"!reach/*"}), Ids({"slide/gone"}));
+  EXPECT_EQ(orphans({}, {"tag:smoke"}), Ids()) << "it has no tags";
+}
+
 TEST(Shard, IsReadStrictly) {
   const auto shard = ParseShard("2/3");
   ASSERT_TRUE(shard);
