@@ -161,6 +161,14 @@ TEST_F(Runner, WhatCannotBeWrittenIsSaidBeforeAnythingRuns) {
   }
 }
 
+TEST_F(Runner, AProposalThatIsNotLeftIsSaid) {
+  WriteFile(root_ / "build/pending", "no folder");
+  const Said said = Do("check --no-pictures");
+  EXPECT_EQ(said.exit_code, 5);
+  EXPECT_NE(said.out.find("    no proposal is left: "), std::string::npos) << said.out;
+  EXPECT_NE(said.out.find("build/pending"), std::string::npos) << said.out;
+}
+
 TEST_F(Runner, VerdictsAreNotLostWithTheFileTheyWereToBeWrittenTo) {
   Accept();
   const std::string page = (root_ / "build/report/index.html").string();

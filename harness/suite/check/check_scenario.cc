@@ -308,19 +308,23 @@ void Play(const std::vector<std::string>& files, CheckedEpisode& checked) {
   checked.verdict.not_recorded = recorder->problem();
 }
 
-/// The only place of a check that writes below build/, pictures of the report aside. What cannot be
-/// written is reported by the command that needs it, or costs only the cause of a difference.
-void Store(const CheckedEpisode& checked) {
+/// The only place of a check that writes below build/, pictures of the report aside. Returns why
+/// `review` will not see a proposal, or ""; what else cannot be written is reported by the command
+/// that needs it, or costs only the cause of a difference.
+std::string Store(const CheckedEpisode& checked) {
   const CheckRequest& request = checked.request;
-  if (request.leave_nothing_behind) return;
+  if (request.leave_nothing_behind) return "";
   const truth::GoldenFiles files(request.root);
+  std::string problem;
   if (checked.golden && checked.golden->Holds()) files.RemovePending(request.id);
-  if (checked.golden && !checked.golden->Holds()) (void)files.WritePending(checked.golden->pending);
+  if (checked.golden && !checked.golden->Holds())
+    problem = files.WritePending(checked.golden->pending);
   (void)files.WriteEngineDifference(request.id, checked.engine_difference);
   StorePictures(request.id, checked.pictures, request.root);
   if (checked.verdict.verdict == Verdict::kPassed)
     (void)WriteTrace(LastPasses(request.root).TracePath(request.id),
                      TraceOf(checked.run.loaded.scenario.scene, checked.run.result.recording));
+  return problem.empty() ? "" : "no proposal is left: " + problem + "\n";
 }
 
 /// The first finding decides; one that is wrong comes before a golden that does not exist yet.
@@ -436,10 +440,10 @@ ScenarioVerdict VerdictOn(CheckedEpisode checked) {
   const bool differs = verdict.verdict == Verdict::kFailed || !verdict.picture_differences.empty();
   if (differs && verdict.attributions.empty() && is_run)
     AttributeFailure(request, checked.run, verdict);
+  if (is_run && checked.IsComplete()) verdict.details += Store(checked);
   for (std::string* text : {&verdict.reason, &verdict.details, &verdict.warnings})
     Shorten(*text, request.root);
   verdict.details += truth::TextOfUndecided(verdict.claims);
-  if (is_run && checked.IsComplete()) Store(checked);
   verdict.command = NextCommand(checked);
   AddPictures(checked);
   return std::move(verdict);
