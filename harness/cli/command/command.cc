@@ -127,7 +127,9 @@ ExitCode Complain(const CommandContext& context, ExitCode code, const std::strin
 ExitCode ComplainWithCorrection(const CommandContext& context, ExitCode code,
                                 const std::string& message,
                                 const std::vector<std::string>& corrected) {
-  if (message.find(kIsRead) != std::string::npos && code == ExitCode::kFailure)
+  const bool is_input = message.find(kIsRead) != std::string::npos ||
+                        message.find("the file is damaged") != std::string::npos;
+  if (is_input && code == ExitCode::kFailure)
     return ComplainWithCorrection(context, ExitCode::kBadInput, message, {});
   context.err << "prehend: " << message << "\n";
   if (!corrected.empty()) context.err << "  again: " << CommandText(corrected) << "\n";

@@ -65,12 +65,13 @@ EpisodeHeader Episode::Header() const {
 
 const RunResult& Episode::Played() {
   if (played_) return *played_;
-  if (file_) {
-    // What was kept is what would be simulated again, if its frames have the hash of then.
-    Result<RunResult> kept = Resegment(*file_, row_, loaded_, /*frames=*/true);
-    if (kept) return played_.emplace(std::move(*kept));
-  }
-  return played_.emplace(RunScenario(loaded_.scenario, loaded_.program, {.record = true}));
+  if (!file_)
+    return played_.emplace(RunScenario(loaded_.scenario, loaded_.program, {.record = true}));
+  // What was kept is what would be simulated again, if its frames have the hash of then.
+  Result<RunResult> kept = Resegment(*file_, row_, loaded_, /*frames=*/true);
+  played_.emplace(kept ? std::move(*kept) : RunResult());
+  if (!kept) played_->status.reason = kept.error().front().message;
+  return *played_;
 }
 
 bool Episode::IsTrial() const {
@@ -230,7 +231,11 @@ Result<Episode> EpisodeOpener::OpenKept(const EpisodeName& name, const GrammarCh
   Episode episode({name.file, row.id, row.scenario, origin, row.grammar}, std::move(loaded));
   episode.file_ = file_;
   episode.row_ = row;
-  if (row.simulated) return episode;
+  if (row.simulated) {
+    if (auto whole = file_->CheckFrames(row, episode.loaded_.scenario.scene.world.rate_hz); !whole)
+      return tl::unexpected(std::move(whole.error()));
+    return episode;
+  }
   PREHEND_TRY(episode.recording_, ReadRecording(*file_, row));
   return episode;
 }

@@ -51,6 +51,7 @@ physics::RunStatus EndOf(const EpisodeRow& row, const Statement& found) {
             .reason = found.Text(11),
             .advice = found.Text(12)};
   }
+  if (row.status != kBeingRecorded) throw Damage(fmt::format("found the status '{}'", row.status));
   return {.kind = Kind::kFailed,
           .tick = row.ticks,
           .entity = "",
@@ -141,8 +142,8 @@ Result<grammar::Timeline> EpisodeFile::TimelineOf(const EpisodeRow& episode) con
   return Guarded(path_, [&] {
     grammar::Timeline timeline{.ticks_per_second = episode.ticks_per_second};
     Statement find = database_.Prepare(
-        "SELECT id, event, begin_tick, end_tick, decided_tick, open_end FROM event WHERE episode = "
-        "? ORDER BY id");
+        "SELECT id, event, begin_tick, end_tick, decided_tick, open_end, begin_s, end_s, "
+        "duration_s FROM event WHERE episode = ? ORDER BY id");
     // Their rows lie in the same order, each read once.
     constexpr const char* kTheirs =
         " WHERE event BETWEEN (SELECT min(id) FROM event WHERE episode = ?1) AND (SELECT max(id) "
@@ -161,8 +162,15 @@ Result<grammar::Timeline> EpisodeFile::TimelineOf(const EpisodeRow& episode) con
       event.interval.end = Between(event.interval.begin, find.Integer(3), kMostTicks);
       event.decided = Between(-kMostTicks, find.Integer(4), kMostTicks);
       event.open_end = find.Integer(5) != 0;
+      const auto [begin, end] = event.interval;
+      const grammar::Tick ticks[] = {begin, end, end - begin};
+      for (int i = 0; i < 3; ++i)
+        if (find.Double(6 + i) != truth::SecondsOf(ticks[i], episode.ticks_per_second))
+          throw Damage(fmt::format("'{}' is {} s where it is tick {}", event.event,
+                                   find.Double(6 + i), ticks[i]));
       for (; has_role && roles.Integer(0) <= id; has_role = roles.Step()) {
         if (roles.Integer(0) == id) event.roles.push_back({roles.Text(1), roles.Text(2)});
+        if (event.roles.size() > 8) throw Damage("an event has more than 8 roles");  // as a golden
       }
       for (; has_value && values.Integer(0) <= id; has_value = values.Step()) {
         if (values.Integer(0) == id)
@@ -212,6 +220,22 @@ Result<std::vector<physics::ScriptNote>> EpisodeFile::NotesOf(const EpisodeRow& 
       notes.push_back({find.Integer(0), physics::HandIndex(find.Integer(1)), find.Text(2)});
     return notes;
   });
+}
+
+Result<void> EpisodeFile::CheckFrames(const EpisodeRow& episode, int rate_hz) const {
+  const auto check = [&] {
+    Between(rate_hz, episode.ticks_per_second, rate_hz);
+    Statement find = database_.Prepare(
+        "SELECT coalesce(min(first_tick), 1), coalesce(max(last_tick), 0), coalesce(sum(frames), "
+        "0) FROM chunk WHERE episode = ?");
+    find.Bind(episode.id).Step();
+    const std::int64_t last = find.Integer(1), frames = find.Integer(2);
+    if (find.Integer(0) != 1 || frames != last || last < episode.ticks ||
+        (last > episode.ticks && episode.status != kBeingRecorded))
+      throw Damage(fmt::format("it has {} frames up to tick {}, wanted one of each of {} ticks",
+                               frames, last, episode.ticks));
+  };
+  return Guarded(path_, check, About(episode));
 }
 
 Result<void> EpisodeFile::EachPart(const EpisodeRow& episode, std::size_t part,

@@ -72,6 +72,9 @@ class EpisodeFile {
   Result<std::vector<KeptEntity>> EntitiesOf(const EpisodeRow& episode) const;
   Result<std::vector<physics::ScriptNote>> NotesOf(const EpisodeRow& episode) const;
 
+  /// An error unless there is a frame of each tick of a run, at the rate of its world.
+  Result<void> CheckFrames(const EpisodeRow& episode, int rate_hz) const;
+
   struct ChunkOfPart {
     std::int64_t first_tick = 0;
     std::size_t frames = 0;

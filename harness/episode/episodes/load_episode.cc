@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "grammar/contents.h"
 #include "harness/episode/episodes/record_episode.h"
@@ -25,15 +26,6 @@ tl::unexpected<grammar::Diagnostics> Failure(const EpisodeFile& file, const Epis
   return tl::unexpected(grammar::Diagnostics{
       {.file = file.path(),
        .message = fmt::format("episode {} ({}): {}", episode.id, episode.scenario, message)}});
-}
-
-std::uint64_t HashOfText(const std::string& text) {
-  std::uint64_t hash = 0;
-  for (const char c : text.substr(std::min<std::size_t>(2, text.size()))) {
-    const bool is_digit = c >= '0' && c <= '9';
-    hash = hash << 4 | static_cast<std::uint64_t>(is_digit ? c - '0' : (c - 'a' + 10) & 15);
-  }
-  return hash;
 }
 
 /// What has no extent is drawn this large.
@@ -242,8 +234,8 @@ Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
   if (!segmentation.problem.empty())
     return Failure(file, episode, "the grammar cannot segment it: " + segmentation.problem);
   run.timeline = std::move(segmentation.timeline);
-  run.state_hash = frames ? hash.value() : HashOfText(episode.state_hash);
-  if (frames && !episode.state_hash.empty() && HashText(run.state_hash) != episode.state_hash)
+  run.state_hash = frames ? hash.value() : std::strtoull(episode.state_hash.c_str(), nullptr, 16);
+  if (frames && episode.status != kBeingRecorded && HashText(run.state_hash) != episode.state_hash)
     return Failure(file, episode,
                    fmt::format("the file is damaged: its frames have the state hash {}, recorded "
                                "was {}",

@@ -121,7 +121,8 @@ ScenarioOnWire Played(const ScoreRequest& request) {
   const episode::RunResult& run = episode->Played();
   if (run.status.kind != physics::RunStatus::Kind::kCompleted)
     return {.problem = grammar::Format(grammar::Diagnostic{.file = request.episode.file,
-                                                           .message = episode::StatusText(run)})};
+                                                           .message = episode::StatusText(run)}),
+            .is_bad_input = run.recording.empty()};
   const grammar::Tick end = run.ticks + 1;
   std::vector<grammar::Timeline> possible;
   for (const grammar::Timeline& truth :

@@ -234,7 +234,8 @@ Watched Watch(const std::shared_ptr<const grammar::Program>& program,
     watched.problem = fmt::format(
         "the episode has more than {} frames, and all of them would have to be remembered",
         kMaxFrames);
-  } else if (past.frames() == 0) {
+  } else if (past.frames() == 0 ||
+             played.failure.find("the file is damaged") != std::string::npos) {
     watched.problem = played.failure.empty() ? "the episode has no frames" : played.failure;
   }
   return watched;

@@ -255,7 +255,7 @@ TEST(EpisodeFileOfMany, AQuestionCostsByEvents) {
           "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < " +
           std::to_string(events) +
           ") INSERT INTO event SELECT x, 1, iif(x % 2, 'contact', 'sliding'), x, x + 1, x,"
-          " 0, 0, 0, 0 FROM n");
+          " 0, x / 480.0, (x + 1) / 480.0, 1 / 480.0 FROM n");
   const auto answers = [&](const char* relation) {
     KnownNames known;
     EventQuestion question{.event = "contact"};
