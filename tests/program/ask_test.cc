@@ -41,6 +41,7 @@ TEST(Ask, WordsOfJsonAreTexts) {
   for (const auto& [query, out] : std::vector<std::pair<std::string, std::string>>{
            {"X = null", "X\nnull\n1 answer\n"},
            {"X = [true, false]", "X\n[true, false]\n1 answer\n"},
+           {"X = 'a\\nb'", "X\na\\nb\n1 answer\n"},
            {"entity(O, [an, object, [name, null]])", "O\nnull\n1 answer\n"}}) {
     const Said said = Prehend({"episode", "ask", CalledNull().kb, query});
     EXPECT_EQ(said.exit_code, 0) << query << said.err;
@@ -67,6 +68,7 @@ TEST(Ask, WhatCannotBeAskedIsRefused) {
   for (const auto& [query, why] : std::vector<std::pair<std::string, std::string>>{
            {"  ", "the query is empty"},
            {"% a remark", "the query is empty"},
+           {"X is " + std::string(20'000, '9'), "needs an integer of more than 65536 bits"},
            {"occurs(A, [S, E]), X is nan, show(world(X))",
             "found show(world(1.5NaN), none), wanted"},
            {"occurs(A, [S, E]), X is inf, show(world(X))",

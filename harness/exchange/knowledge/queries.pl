@@ -80,7 +80,7 @@ measured(T0, T, Measures) :-
 measure(E-N) :- number_of(E, N).
 
 %!  number_of(+Expression, ?Number) : of listed functions, and of no number beyond a size.
-number_of(E, N) :- number(E), !, N = E.
+number_of(E, N) :- number(E), !, bits(E, Bits), of_size(Bits), N = E.
 number_of(E, _) :- var(E), !, throw(error(instantiation_error, _)).
 number_of(E, N) :-
     (   callable(E), \+ is_dict(E), E =.. [F | Es], length(Es, Arity), function(Arity, Fs), memberchk(F, Fs) -> true

@@ -41,6 +41,13 @@ class Colors {
   std::size_t next_ = 0;
 };
 
+/// Line ends and tabs of a cell, as JSON writes them.
+void KeepInItsRow(std::string& cell) {
+  for (const auto& [end, written] : {std::pair('\n', "\\n"), {'\r', "\\r"}, {'\t', "\\t"}})
+    for (std::size_t at = 0; (at = cell.find(end, at)) != cell.npos; ++at)
+      cell.replace(at, 1, written);
+}
+
 EventDrawing DrawingOf(const grammar::EventSignature& event, std::uint32_t color) {
   EventDrawing drawing{.as = event.drawing.as, .color = color, .ghost = event.drawing.ghost};
   const auto hand = std::ranges::find(event.classes, "Hand");
@@ -114,7 +121,9 @@ std::string NameByHand(const NamedEvent& event, const HandRoles& roles) {
   return hand.empty() ? event.event : event.event + " of " + hand;
 }
 
-std::string AlignColumns(const std::vector<std::vector<std::string>>& rows, Numbers numbers) {
+std::string AlignColumns(const std::vector<std::vector<std::string>>& cells, Numbers numbers) {
+  std::vector<std::vector<std::string>> rows = cells;
+  for (auto& row : rows) std::ranges::for_each(row, KeepInItsRow);
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));
