@@ -50,6 +50,19 @@ TEST(ImportLimits, ALongNameOfAFileIsCutInTheMiddle) {
   EXPECT_EQ(said.exit_code, 0) << said.err;
 }
 
+TEST(ImportLimits, AClockThatRunsLongerThanARecordingIsRefused) {
+  const auto folder = FreshFolder("import_long_clock");
+  Row last = CupAt(5);
+  for (const double t_s : {2e12, 3e18}) {
+    last.t_s = t_s;
+    const Said said = ImportCsv(folder, Csv(60, AsItIs) + AsWritten("Mug", last),
+                                std::string(kCupMap) + "lost: unknown\n");
+    EXPECT_EQ(said.exit_code, 2) << said.out;
+    EXPECT_NE(said.err.find("s after the first; of "), std::string::npos) << said.err;
+    EXPECT_NE(said.err.find("is 'time_unit' right?"), std::string::npos) << said.err;
+  }
+}
+
 TEST(ImportLimits, AJointFartherThanARecordingSaysIsRefused) {
   const auto folder = FreshFolder("import_far_joint");
   std::string csv = "t,j,dx,dy,dz,hx,hy,hz\n";

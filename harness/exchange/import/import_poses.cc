@@ -482,6 +482,12 @@ class Importer {
 
   /// The times of all poses. Returns what is wrong, or "".
   std::string SetTicks() {
+    const double most_s = static_cast<double>(episode::kLatestTick / map_.ticks_per_second);
+    if (file_.last_s > most_s)
+      return fmt::format(
+          "its last row is {:g} s after the first; of {} ticks per second, a recording has at most "
+          "{:g} s: is 'time_unit' right?",
+          file_.last_s, map_.ticks_per_second, most_s);
     std::vector<const Track*> tracks;
     for (const auto* all : {&tracks_, &openings_})
       for (const Track& track : *all) tracks.push_back(&track);
