@@ -168,7 +168,7 @@ def near_text(row):
     if "shift_s" in row:
         return f"; {row['episode']} moves by {1000 * row['shift_s']:.3g} ms, which is tolerated"
     if "nearest" in row:
-        return f"; {row['episode']} is nearest, {row['nearest']:.3g}{' ' if row['unit'] else ''}{row['unit']} away"
+        return f"; {row['episode']} is nearest, {row['nearest']:.3g}{' ' if row['unit'] else ''}{row['unit']} from the threshold"
     return f"; {row['episode']} comes there" if "episode" in row else ""
 
 

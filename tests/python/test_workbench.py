@@ -79,7 +79,7 @@ class Workbench(takes.Folder, unittest.TestCase):
         dull = self.cup("dull", [0.5, 0.5, 0.5, 0.5])
         code, out, err = run("mutate", dull, "--grammar", self.shelf(), "--fail-below", 90, "--frames", 0, "--jobs", 1)
         self.assertEqual(code, 1)
-        self.assertRegex(out, r"shelf.grammar:2:13: low: 10 -> 20; dull is nearest, 0.4 m away")
+        self.assertRegex(out, r"shelf.grammar:2:13: low: 10 -> 20; dull is nearest, 0.4 m from the threshold")
         self.assertRegex(err, "of the mutants are killed, wanted 90 %")
         self.assertEqual(run("mutate", "none.jsonl", "--grammar", self.shelf())[0], 2)
         self.assertEqual(run("mutate", dull, "--grammar", "no_such_grammar")[0], 2)

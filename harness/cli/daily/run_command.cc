@@ -135,8 +135,8 @@ ExitCode CountTrials(const ParsedOptions& options, const episode::RunRequest& re
     return !result.not_recorded.empty();
   });
   return Complain(context, ExitCode::kFailure,
-                  fmt::format("--record: {} of {} trials are not in the file: {}", lost,
-                              report->results.size(), first->not_recorded));
+                  fmt::format("--record: {} of {} trials are not in the file; the first, {}: {}",
+                              lost, report->results.size(), first->trial, first->not_recorded));
 }
 
 /// The run as a page, judged as a check judges it. Returns "", or why it could not be written.

@@ -50,8 +50,10 @@ tl::expected<EpisodeName, NotFound> ScenarioNamed(const std::string& typed,
   if (!path) path = FindScenario(ShippedScenarios(root), typed);
   if (path)
     return EpisodeName{.file = *path, .number = {}, .scenario = IdOf(ScenarioAt(scenarios, *path))};
-  NotFound none{.exit_code = ExitCode::kNothing, .message = "no scenario '" + typed + "'"};
   const std::string hint = HintForScenario(scenarios, typed);
+  const char* const lacks =
+      hint.starts_with("which one") ? "several skills have a scenario '" : "no scenario '";
+  NotFound none{.exit_code = ExitCode::kNothing, .message = lacks + typed + "'"};
   if (!hint.empty()) none.message += "; " + hint;
   none.message += " ('" + CommandText({"list"}) + "' shows all)";
   none.typed = typed;

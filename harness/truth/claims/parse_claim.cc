@@ -207,6 +207,7 @@ class ClaimParser {
   /// `next_` is what follows the word.
   std::string RemedyForQuantity(std::string_view said, std::string_view ours) {
     const bool compares = said == "more" || said == "fewer" || said == "less" || said == "up";
+    if (ours == "no " && next_.text == "one") Advance();  // "not one" is none
     if (!compares) return fmt::format("write: {}{}", ours, text_.substr(next_.offset));
     Advance();  // 'than' or 'to'
     std::optional<int> number = NumberNamed(next_.text);

@@ -151,6 +151,7 @@ TEST(ParseClaim, WordsThatPeopleTryGetTheRemedy) {
   EXPECT_EQ(Problem("less than 1 sliding"),
             quantity("less") + "at least 2 grasping, at most one sliding, no sliding");
   EXPECT_EQ(Problem("up to 4 sliding"), quantity("up") + "write: at most 4 sliding");
+  EXPECT_EQ(Problem("not one sliding"), quantity("not") + "write: no sliding");
   EXPECT_EQ(Problem("exactly sliding"),
             "8: expected a number, found 'sliding' | at least 2 grasping");
 
