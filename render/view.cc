@@ -15,7 +15,8 @@ using Eigen::Matrix4f;
 using Eigen::Vector3f;
 
 constexpr float kFilledShare = 0.90f;  // share of the picture filled by the box of a named camera
-constexpr float kMinEyeDistance_m = 0.3f;
+// Nearer than this only for what is small even there.
+constexpr float kMinEyeDistance_m = 0.3f, kSmallShare = 1 / 3.f;
 
 float HalfTangent(float field_of_view_deg) {
   return std::tan(field_of_view_deg * std::numbers::pi_v<float> / 360);
@@ -163,10 +164,10 @@ Camera CameraFrom(const Vector3f& towards_the_eye, const Vector3f& low_m, const 
   // then repeat.
   for (int round = 0; round < 4; ++round) {
     const std::array<Vector3f, 8> corners = CornersInView(axes, look_at, low_m, high_m);
-    distance = kMinEyeDistance_m;
-    for (const Vector3f& q : corners) {
-      distance = std::max(distance, q.z() + (q.head<2>().array().abs() / tangent).maxCoeff());
-    }
+    float filled = 0;
+    for (const Vector3f& q : corners)
+      filled = std::max(filled, q.z() + (q.head<2>().array().abs() / tangent).maxCoeff());
+    distance = std::max({filled, std::min(kMinEyeDistance_m, filled / kSmallShare), 1e-3f});
     Eigen::Array2f least = Eigen::Array2f::Constant(1e9f), most = -least;
     for (const Vector3f& q : corners) {
       const Eigen::Array2f slope = q.head<2>().array() / (distance - q.z());

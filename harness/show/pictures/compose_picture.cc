@@ -22,6 +22,7 @@ constexpr double kPathPoints_per_s = 60;
 const render::Color kKept = ColorOf(0xA8DDB5);
 /// Radius of the mark of a contact.
 constexpr float kHandsContact_m = 0.008f, kPersonsContact_m = 0.025f;
+constexpr double kMarkHalf_m = 0.006;  ///< height of that of a support; less below a crumb
 /// Rows of the strip; more would hide the picture.
 constexpr std::size_t kMaxRows = 6;
 
@@ -231,11 +232,12 @@ std::vector<render::Marker> ComposeMarkers(const scenario::Scenario& scenario,
     const Eigen::Vector3d half =
         (q_WM.inverse() * X_WB.q).toRotationMatrix().cwiseAbs() * box.half_size_m;
     const Eigen::Vector3d foot = X_WB * box.p_BC_m - q_WM * Eigen::Vector3d(0, 0, half.z());
-    markers.push_back(
-        {.kind = render::MarkerKind::kSupport,
-         .p_W_m = foot.cast<float>(),
-         .half_size_m = Eigen::Vector3d(half.x() * 1.35, half.y() * 1.35, 0.006).cast<float>(),
-         .q_WM = q_WM.cast<float>()});
+    markers.push_back({.kind = render::MarkerKind::kSupport,
+                       .p_W_m = foot.cast<float>(),
+                       .half_size_m = Eigen::Vector3d(half.x() * 1.35, half.y() * 1.35,
+                                                      std::min(kMarkHalf_m, half.maxCoeff() / 2))
+                                          .cast<float>(),
+                       .q_WM = q_WM.cast<float>()});
   }
   for (const physics::ContactPoint& contact : snapshot.contacts) {
     const bool is_hands = contact.a.hand != physics::kNone || contact.b.hand != physics::kNone;

@@ -112,7 +112,7 @@ render::Image Matte(const render::Image& on_white, const render::Image& on_black
   return image;
 }
 
-/// A larger body is scenery: it does not affect what the camera frames.
+/// A larger body is scenery, unless it moves: it does not affect what the camera frames.
 constexpr double kSceneryFrom_m = 0.5;
 /// A body that moves farther than this takes part in the action.
 constexpr double kMoves_m = 0.02;
@@ -146,8 +146,19 @@ class Framing {
   }
 
   void AddBody(std::size_t body, const physics::Snapshot& now) {
+    if (!IsSmall(body)) {
+      box_.extend(physics::WorldBounds(scenario_.scene.bodies[body], now.bodies[body].X_WB));
+      return;
+    }
     const physics::LocalBox local = physics::BoundingBox(scenario_.scene.bodies[body]);
     AddBall((now.bodies[body].X_WB * local.p_BC_m), local.half_size_m.norm());
+  }
+  /// All that is no floor or furniture, where a scene has nothing else.
+  void AddThings(const physics::Snapshot& now) {
+    for (std::size_t i = 0; i < scenario_.scene.bodies.size(); ++i) {
+      const physics::Body& body = scenario_.scene.bodies[i];
+      if (physics::IsThing(body) && !body.fixed && !body.shapes.empty()) AddBody(i, now);
+    }
   }
   void AddBall(const Eigen::Vector3d& p_W_m, double radius_m) {
     box_.extend(Eigen::Vector3d(p_W_m.array() - radius_m));
@@ -414,7 +425,9 @@ render::Camera CameraFor(const scenario::Scenario& scenario, const episode::RunR
   } else {
     framing.ForEachLook([&](const physics::Snapshot& now) { framing.AddHands(now); });
     for (std::size_t i = 0; i < scenario.scene.bodies.size(); ++i) {
-      if (!framing.IsSmall(i) || !IsFramed(scenario, i, name)) continue;
+      const bool is_part = scenario.scene.bodies[i].kinematic;
+      const bool is_scenery = !framing.IsSmall(i) && (is_part || !framing.Moves(i));
+      if (is_scenery || !IsFramed(scenario, i, name)) continue;
       const bool is_named =
           std::ranges::find(format.framed, scenario.scene.bodies[i].name) != format.framed.end();
       if (is_named || framing.Moves(i))
@@ -422,6 +435,7 @@ render::Camera CameraFor(const scenario::Scenario& scenario, const episode::RunR
       else if (name != "action")
         framing.AddBody(i, run.recording.front());
     }
+    if (framing.box().isEmpty()) framing.AddThings(picture.snapshot);
     if (name == "top") framing.AddTables(run.recording.front());
   }
   Eigen::AlignedBox3f box = framing.box().cast<float>();

@@ -232,6 +232,34 @@ TEST(ComposePictureTest, TheTableIsWholeFromAbove) {
   EXPECT_FALSE(is_whole(1.3, "top"));    // a large one is cut
 }
 
+TEST(ComposePictureTest, WhatMovesIsWholeHoweverLargeItIs) {
+  const auto share = [](double edge_m, double way_m) {
+    Stage stage;
+    stage.scenario.scene.bodies[1].shapes = {{physics::Box{Eigen::Vector3d::Constant(edge_m)}, {}}};
+    stage.scenario.scene.bodies[0].shapes = {{physics::Box{{9, 9, 0.02}}, {}}};
+    stage.scenario.scene.hands.clear();
+    for (physics::Snapshot& snapshot : stage.run.recording) {
+      snapshot.hands.clear();
+      snapshot.bodies[1].X_WB.p_m.z() = way_m * static_cast<double>(snapshot.tick) / 480;
+    }
+    const render::Picture picture =
+        ComposePicture(stage.scenario, stage.run, {.at = {"0.5", {}}, .camera = {"front", {}}});
+    const render::View view = MakeView(picture.camera, 1280, 720, 0, {});
+    Eigen::AlignedBox2f seen;
+    for (const double x : {-edge_m / 2, edge_m / 2})
+      for (const double y : {-edge_m / 2, edge_m / 2})
+        for (const double z : {-edge_m / 2, way_m + edge_m / 2})
+          seen.extend(*ToPixel(view, Eigen::Vector3d(x, y, z).cast<float>()));
+    EXPECT_GE(seen.min().minCoeff(), 0) << edge_m;
+    EXPECT_LE(seen.max().x(), 1280) << edge_m;
+    EXPECT_LE(seen.max().y(), 720) << edge_m;
+    return seen.sizes().y() / 720;
+  };
+  for (const double edge_m : {0.2, 1.0, 4.0}) EXPECT_GT(share(edge_m, 0.5), 0.4) << edge_m;
+  EXPECT_GT(share(1.5, 0), 0.4) << "there is nothing else";
+  EXPECT_GT(share(0.005, 0), 0.1) << "a crumb can be seen";
+}
+
 TEST(ComposePictureTest, PicturesOfOneScenarioHaveOneCamera) {
   Stage stage;
   for (physics::Snapshot& snapshot : stage.run.recording)
