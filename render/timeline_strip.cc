@@ -24,7 +24,8 @@ constexpr float kRowText = 15, kBarText = 14, kSmallText = 12;
 constexpr float kMinStripText_px = 9;
 constexpr float kMaxHeightShare = 0.42f;
 constexpr std::size_t kMaxLanes = 4;
-constexpr float kMaxDrift = 0.3f;  // of a name above its bar, as a share of its width
+constexpr std::size_t kEndOfLabel = 9;  // bytes of a long one: "_1 on"
+constexpr float kMaxDrift = 0.3f;       // of a name above its bar, as a share of its width
 
 struct TimeAxis {
   double begin_s = 0, end_s = 1;
@@ -292,7 +293,7 @@ StripLayout LayOutStrip(const TimelineStrip& strip, const Font& font, int width_
     if (used + row_height > kMaxHeightShare * height) break;
     used += row_height;
     ++shown;
-    lanes.front().label = font.Shortened(row.label, text_size, label_width + 1);
+    lanes.front().label = font.Shortened(row.label, text_size, label_width + 1, kEndOfLabel);
     std::move(lanes.begin(), lanes.end(), std::back_inserter(layout.lanes));
   }
   if (layout.lanes.empty()) return layout;

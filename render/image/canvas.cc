@@ -72,14 +72,19 @@ Glyph Font::Draw(char32_t character, float size_px, float fraction) const {
   return glyph;
 }
 
-std::string Font::Shortened(const std::string& text, float size_px, float width_px) const {
+std::string Font::Shortened(const std::string& text, float size_px, float width_px,
+                            std::size_t end) const {
   if (Width(text, size_px) <= width_px) return text;
-  for (std::size_t length = text.size(); length-- > 0;) {
-    const bool inside_character = (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80;
-    const std::string beginning = text.substr(0, length) + "\u2026";
-    if (!inside_character && length > 1 && Width(beginning, size_px) <= width_px) return beginning;
+  const auto is_inside_character = [&](std::size_t at) {
+    return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80;
+  };
+  std::size_t tail = text.size() - std::min(end, text.size());
+  while (is_inside_character(tail)) ++tail;
+  for (std::size_t length = tail; length-- > 2;) {
+    const std::string shorter = text.substr(0, length) + "\u2026" + text.substr(tail);
+    if (!is_inside_character(length) && Width(shorter, size_px) <= width_px) return shorter;
   }
-  return "";
+  return end > 0 ? Shortened(text, size_px, width_px) : "";
 }
 
 std::vector<char32_t> CodePoints(std::string_view text) {

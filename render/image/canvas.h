@@ -34,8 +34,10 @@ class Font {
   float Ascent(float size_px) const;
   /// `fraction` is the pen's x inside its pixel, 0..1.
   Glyph Draw(char32_t character, float size_px, float fraction) const;
-  /// The text, or its beginning with an ellipsis, or nothing: at most this wide.
-  std::string Shortened(const std::string& text, float size_px, float width_px) const;
+  /// The text, or its beginning with an ellipsis and its last `end` bytes, or nothing: at most
+  /// this wide.
+  std::string Shortened(const std::string& text, float size_px, float width_px,
+                        std::size_t end = 0) const;
 
  private:
   struct State;

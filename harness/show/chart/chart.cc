@@ -21,6 +21,7 @@ constexpr double kPageFoot = 3.6;          ///< without legend
 constexpr std::size_t kMostPoints = 1500;  ///< of a curve; more cannot be seen
 constexpr std::size_t kMostNameLines = 3;  ///< of a row
 constexpr double kMargin_px = 10;
+constexpr double kLeastBar_px = 2.5;                 ///< a frame would cover it
 constexpr double kLetter = 0.6, kBoldLetter = 0.68;  ///< width, in heights of the text
 constexpr double kLine = 1.35;                       ///< from one line of a text to the next
 
@@ -40,7 +41,10 @@ class Drawing {
     for (const Row& row : chart.rows) {
       std::vector<std::string>& lines =
           names_.emplace_back(BrokenLines(row.name, LettersIn(0.42 * format.width_px, kLetter)));
-      if (lines.size() > kMostNameLines) lines.resize(kMostNameLines), lines.back() += "…";
+      if (lines.size() > kMostNameLines) {  // the ends tell apart what begins alike
+        lines.erase(lines.begin() + kMostNameLines - 1, lines.end() - 1);
+        lines.back() = "…" + lines.back();
+      }
       for (const std::string& line : lines) longest = std::max(longest, line.size());
     }
     left_ = 20 + std::clamp(WidthOf(longest, kLetter), 50.0, 0.5 * format.width_px);
@@ -195,7 +199,8 @@ class Drawing {
                                       {"width", Number(width)},
                                       {"height", Number(tall)},
                                       {"fill", ColorText(bar.color)}});
-    Paint(node, bar.style, {{"stroke", bar.frame.empty() ? "#FFFFFF" : bar.frame.c_str()}});
+    const char* const bare = width > kLeastBar_px ? "#FFFFFF" : "none";
+    Paint(node, bar.style, {{"stroke", bar.frame.empty() ? bare : bar.frame.c_str()}});
     if (InPage()) {
       AddTimes(node, bar.begin_s, bar.end_s);
       if (!row.id.empty()) {
@@ -341,7 +346,9 @@ class Drawing {
   bool IsShown(const Bar& bar) const {
     return bar.end_s > chart_.from_s && bar.begin_s < chart_.to_s;
   }
-  double BarPx(const Bar& bar) const { return std::max(1.5, X(bar.end_s) - X(bar.begin_s)); }
+  double BarPx(const Bar& bar) const {
+    return std::max(kLeastBar_px, X(bar.end_s) - X(bar.begin_s));
+  }
   bool HasText(const Bar& bar) const {
     return WidthOf(bar.text.size(), 0.62) < BarPx(bar) - 6 || (InPage() && !bar.text.empty());
   }
@@ -390,7 +397,8 @@ class Drawing {
     for (const auto& [at, text] : ticks) {
       Line("grid", X(at), top, X(at), bottom, "#EEEEEE");
       if (!InPage()) Line("", X(at), bottom, X(at), bottom + 4, kInk);
-      Text("axis", X(at), bottom + 4 + 1.1 * format_.text_px, text, "middle");
+      const double most_x = format_.width_px - WidthOf(text.size(), kLetter) / 2;
+      Text("axis", std::min(X(at), most_x), bottom + 4 + 1.1 * format_.text_px, text, "middle");
     }
     const double half_px = WidthOf(chart_.axis.size(), kLetter) / 2;
     Text("name", std::min((left_ + right_) / 2, format_.width_px - half_px),

@@ -222,7 +222,7 @@ bool Window::Shows(const scenario::Scenario& scenario, const grammar::NamedEvent
 }
 
 Window WholeOf(const episode::RunResult& run) {
-  return {.from_s = 0, .to_s = SecondsOf(run, run.ticks)};
+  return {.from_s = 0, .to_s = SecondsOf(run, run.ticks + (run.is_recording ? 1 : 0))};
 }
 
 std::string HandOf(const episode::RunResult& run, const grammar::NamedEvent& event) {

@@ -86,6 +86,9 @@ TEST_F(CanvasTest, ShortenedFitsAndIsValidText) {
     const std::string cut = font_->Shortened(text, 14, width);
     EXPECT_LE(font_->Width(cut, 14), width);
     for (const char32_t point : CodePoints(cut)) EXPECT_NE(point, 0xFFFDu) << cut;
+    const std::string with_end = font_->Shortened(text, 14, width, 5);
+    EXPECT_LE(font_->Width(with_end, 14), width);
+    EXPECT_TRUE(width < 80 || with_end.ends_with(" alle")) << with_end;
   }
 }
 

@@ -112,6 +112,25 @@ TEST(Chart, NothingIsCutOrOverprintedWhereItIsNarrow) {
   }
 }
 
+TEST(Chart, TheLastTimeIsNotCutAndAShortEventIsSeen) {
+  const Chart chart{.to_s = 100000, .rows = {{"hand", {{5, 5.1, "", 0x112233}}}}};
+  pugi::xml_document svg;
+  ASSERT_TRUE(svg.load_string(ChartSvg(chart, {.width_px = 400}).c_str()));
+  const pugi::xml_node last = svg.select_node("//text[. = '100000']").node();
+  EXPECT_LE(last.attribute("x").as_double() + 0.6 * 12 * 6 / 2, 400);
+  const pugi::xml_node bar = svg.select_node("//rect[@fill = '#112233']").node();
+  EXPECT_GE(bar.attribute("width").as_double(), 2);
+  EXPECT_STREQ(bar.attribute("stroke").value(), "none") << "no frame covers it";
+}
+
+TEST(Chart, LongNamesThatBeginAlikeAreToldApart) {
+  const std::string name(200, 'x');
+  const std::string svg =
+      ChartSvg({.rows = {{name + "_first", {}}, {name + "_second", {}}}}, {.width_px = 400});
+  EXPECT_NE(svg.find("_first<"), std::string::npos);
+  EXPECT_NE(svg.find("_second<"), std::string::npos);
+}
+
 TEST(Chart, LinesAreBrokenAtBlanksElseInNames) {
   using Lines = std::vector<std::string>;
   EXPECT_EQ(BrokenLines("one two", 7), Lines{"one two"});
