@@ -112,28 +112,29 @@ class Differ {
                .second_has = !has}};
     }
     std::vector<BoundaryDifference> differences;
+    const std::string changes = fmt::format("{}", fmt::join(pairing.changes, ", "));
     const auto add = [&](const char* boundary, Tick offset, Tick first, Tick second) {
       if (!IsOut(pairing, offset)) return;
       const double off_ms = truth::MillisecondsOf(offset, comparison_.ticks_per_second);
-      differences.push_back(
-          {.boundary = fmt::format("{} of {}", boundary, label),
-           .how = fmt::format("{:.1f} ms {}", std::abs(off_ms), off_ms > 0 ? "later" : "earlier"),
-           .involved = Involved(pairing),
-           .first_s = Seconds(first),
-           .second_s = Seconds(second)});
+      differences.push_back({.boundary = fmt::format("{} of {}", boundary, label),
+                             .how = fmt::format("{:.1f} ms {}{}{}", std::abs(off_ms),
+                                                off_ms > 0 ? "later" : "earlier",
+                                                changes.empty() ? "" : ", ", changes),
+                             .involved = Involved(pairing),
+                             .first_s = Seconds(first),
+                             .second_s = Seconds(second)});
     };
     add("begin", pairing.begin_offset, pairing.expected->interval.begin,
         pairing.actual->interval.begin);
     add("end", pairing.end_offset, pairing.expected->interval.end, pairing.actual->interval.end);
     if (differences.empty()) {
       const double begin_s = Seconds(pairing.actual->interval.begin);
-      differences.push_back({.boundary = label,
-                             .how = pairing.changes.empty()
-                                        ? std::string(truth::Name(pairing.agreement))
-                                        : fmt::format("{}", fmt::join(pairing.changes, ", ")),
-                             .involved = Involved(pairing),
-                             .first_s = begin_s,
-                             .second_s = begin_s});
+      differences.push_back(
+          {.boundary = label,
+           .how = changes.empty() ? std::string(truth::Name(pairing.agreement)) : changes,
+           .involved = Involved(pairing),
+           .first_s = begin_s,
+           .second_s = begin_s});
     }
     return differences;
   }

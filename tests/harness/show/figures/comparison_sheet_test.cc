@@ -72,6 +72,14 @@ TEST(ComparisonSheet, SaysWhatIsOtherwiseAtTheSameTime) {
   ASSERT_EQ(differences.size(), 1u);
   EXPECT_EQ(differences[0].boundary, "grasping(right_hand, milk)");
   EXPECT_EQ(differences[0].how, "style: pinch -> wrap");
+  const auto [later, both] = GoldenLike(run, [](auto& events) {
+    grammar::NamedEvent& grasping = EventOf(events, "grasping");
+    std::ranges::find(grasping.roles, "style", &grammar::Role::name)->value = "pinch";
+    grasping.interval.end -= 48;
+  });
+  const auto two = BoundaryDifferences(both, WholeOf(run), loaded.scenario);
+  ASSERT_EQ(two.size(), 1u);
+  EXPECT_EQ(two[0].how, "100.0 ms later, style: pinch -> wrap");
 }
 
 TEST(ComparisonSheet, ShowsTheScenesOfEachDifference) {
