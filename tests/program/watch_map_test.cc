@@ -205,6 +205,28 @@ TEST(WatchMap, WhateverStandsLastInAFrameIsOfThatFrame) {
   }
 }
 
+// A pause in which no row comes, while the cup stands and while it is carried.
+TEST(WatchMap, WhatNoRowTellsIsLostAsInAnImport) {
+  for (const auto& [from, until] : {std::pair(20, 60), {150, 190}}) {
+    std::string csv = Csv([](int i) { return Row(i); });
+    std::istringstream lines(csv);
+    csv = "";
+    int i = -1;
+    for (std::string line; std::getline(lines, line); ++i)
+      if (i < from || i >= until) csv += line + "\n";
+    for (const char* lost : {"unknown", "hold", "in_rows"}) {
+      const std::string map = std::string("lost: ") + lost + "\n" + kMap;
+      const Watched watched = Watch(csv, map);
+      EXPECT_EQ(watched.said.exit_code, 0) << watched.said.err;
+      const std::string take = (watched.folder / "take.jsonl").string();
+      ImportCsv(watched.folder, csv, "import: 1\n" + map);
+      const Json all = Json::parse(Prehend({"episode", "resegment", take, "--json"}).out)["events"];
+      EXPECT_EQ(Events(Lines(watched.said.out)), Events({all.begin(), all.end()}))
+          << lost << " from " << from;
+    }
+  }
+}
+
 /// A frame as Leap and Quest log it.
 std::string JsonFrame(int i, bool has_hand = true) {
   const auto cup = CupAt(i / kRate_hz), hand = HandAt(i / kRate_hz);

@@ -108,6 +108,7 @@ struct FrameEntry {
   std::vector<Named<SampleEntry>> samples;
   std::vector<Named<HandEntry>> hands;
   std::vector<TouchEntry> touches;
+  std::vector<FrameEntry> before = {};  ///< that come with it, or not at all
 };
 
 /// The last line, which may be missing.

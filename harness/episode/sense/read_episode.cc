@@ -318,6 +318,7 @@ class EpisodeReader {
   }
 
   void Take(const FrameEntry& entry, DiagnosticList& errors) {
+    for (const FrameEntry& one : entry.before) Take(one, errors);
     const grammar::Tick before = now_.tick, tick = entry.tick.value;
     const bool first = episode.frames.empty();
     if (episode.says_its_end)

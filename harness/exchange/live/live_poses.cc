@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "harness/base/base/median.h"
 #include "harness/exchange/import/import_poses.h"
 #include "harness/exchange/poses/table_layout.h"
 
@@ -15,6 +16,8 @@ namespace prehend::exchange {
 namespace {
 
 constexpr std::size_t kMostHeadLines = 200;
+constexpr std::size_t kMostSteps = 1000;
+constexpr double kGap = 1.5;  ///< of the usual step, as in an import
 
 bool IsJson(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \t");
@@ -96,6 +99,7 @@ grammar::Diagnostics LivePoses::Begin(const std::string& row, episode::EpisodeSt
   samples_.resize(count);
   triggers_.resize(count);
   upright_.resize(count);
+  seen_s_.resize(count);
   opened_.resize(OpeningsOf(map_->map).size());
   for (std::size_t i = 0; i < count; ++i) samples_[i].not_tracked = true;
   if (is_json)
@@ -202,6 +206,35 @@ void LivePoses::AddOpening(const OpeningSeries& opening) {
   samples_[opening.entity].joint_position = at;
 }
 
+/// As an import: how a body came over a gap is not known, and in a pause without rows it is lost,
+/// too, unless the map says otherwise.
+void LivePoses::TellLosses(episode::FrameEntry& frame) {
+  const ImportMap& map = map_->map;
+  const double now_s = *frame_s_, step_s = given_s_ ? now_s - *given_s_ : 0;
+  if (step_s > 0 && steps_s_.size() < kMostSteps) steps_s_.push_back(step_s);
+  const double usual_s = step_s > map.bridge_s ? Median(steps_s_) : 0;
+  const auto is_loss = [&](double gap_s) {
+    return map.lost != Lost::kInRows && gap_s > map.bridge_s + 1e-9 && gap_s > kGap * usual_s;
+  };
+  episode::FrameEntry lost;
+  for (std::size_t i = 0; i < map.entities.size(); ++i) {
+    const Named<MappedEntity>& entity = map.entities[i];
+    if (!entity.value.from) continue;
+    lost.samples.push_back({entity.name, {}, {.not_tracked = true}});
+    const auto sample =
+        std::ranges::find(frame.samples, entity.name, &Named<episode::SampleEntry>::name);
+    if (sample == frame.samples.end() || sample->value.not_tracked) continue;
+    if (seen_s_[i] && is_loss(now_s - *seen_s_[i]))
+      sample->value.v_m_per_s = sample->value.w_rad_per_s = Eigen::Vector3d::Zero();
+    seen_s_[i] = now_s;
+  }
+  if (map.lost == Lost::kHold || !is_loss(step_s) || step_s <= map.bridge_s + kGap * usual_s)
+    return;
+  const double lost_s = *given_s_ + map.bridge_s;  // at its end a bridge still holds
+  lost.tick.value = std::llround(lost_s * static_cast<double>(map.ticks_per_second)) + 1;
+  frame.before.push_back(std::move(lost));
+}
+
 grammar::Diagnostics LivePoses::Emit(episode::EpisodeStream& stream) {
   const ImportMap& map = map_->map;
   episode::FrameEntry frame;
@@ -227,6 +260,7 @@ grammar::Diagnostics LivePoses::Emit(episode::EpisodeStream& stream) {
       hand.ahead = Eigen::Quaterniond(q[0], q[1], q[2], q[3]) * e.ahead->value.normalized();
     }
   }
+  TellLosses(frame);
   const double frame_s = *frame_s_;
   given_s_ = frame_s;
   frame_s_.reset();

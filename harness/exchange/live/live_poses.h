@@ -36,6 +36,7 @@ class LivePoses {
   std::string Known(double row_s) const;
   void Add(std::size_t entity, PoseSample sample);
   void AddOpening(const OpeningSeries& opening);
+  void TellLosses(episode::FrameEntry& frame);
   grammar::Diagnostics Emit(episode::EpisodeStream& stream);
 
   const std::string name_, map_path_;
@@ -48,7 +49,9 @@ class LivePoses {
   std::optional<double> last_s_;                 ///< of the frame before
   std::optional<double> given_s_;                ///< likewise, also if that was left out
   std::optional<double> frame_s_;                ///< of the frame that is being collected
+  std::vector<double> steps_s_;                  ///< from frame to frame, of the first ones
   std::vector<episode::SampleEntry> samples_;    ///< of it, by entity
+  std::vector<std::optional<double>> seen_s_;    ///< by entity: when it was last
   std::vector<bool> opened_;                     ///< of it, which of the openings are known
   std::vector<std::optional<double>> triggers_;  ///< by entity: the last ones
   std::vector<std::optional<Eigen::Quaterniond>> upright_;  ///< by entity, in the file's axes
