@@ -396,6 +396,45 @@ TEST(ImportWarnings, AWrongUnitOfNoNameIsSeenWhereThingsRest) {
   EXPECT_EQ(SaidOfCup("unit: m", "metres_per_unit: 1"), "");
 }
 
+TEST(ImportWarnings, OfTimesInAnotherUnitThatUnitIsNamed) {
+  for (const auto& [of_map, per_second, named] :
+       {std::tuple("ms", 1e6, "microseconds"), {"us", 1e3, "milliseconds"}, {"ms", 1, "seconds"}}) {
+    std::string csv = "t,name,x,y,z,qw,qx,qy,qz\n";
+    for (int i = 0; i <= 300; ++i)
+      for (const bool is_cup : {true, false}) {
+        auto at = is_cup ? CupAt(i / 60.0) : HandAt(i / 60.0);
+        at.t_s *= per_second;
+        csv += AsWritten(is_cup ? "Mug" : "Glove", at);
+      }
+    const std::string map = Replaced(kCupMap, "time_unit: s", std::string("time_unit: ") + of_map);
+    const Said said = ImportCsv(FreshFolder("import_warnings"), csv, map);
+    EXPECT_NE(said.err.find(std::string("the times look like ") + named + ";"), said.err.npos)
+        << said.err;
+  }
+}
+
+// It was asked for the unit; in a smaller one nothing moves.
+TEST(ImportWarnings, AFarOriginIsNoWrongUnit) {
+  const auto folder = FreshFolder("import_warnings");
+  std::string csv = "t,name,x,y,z,qw,qx,qy,qz\n";
+  for (int i = 0; i <= 300; ++i)
+    for (const bool is_cup : {true, false}) {
+      auto at = is_cup ? CupAt(i / 60.0) : HandAt(i / 60.0);
+      at.x += 35, at.y += 120, at.z += 90;
+      csv += AsWritten(is_cup ? "Mug" : "Glove", at);
+    }
+  const std::string table =
+      "  table: {at_m: [0, 0, 0.7], fixed: true, class: Table, size_m: [2.0, 1.0, 0.04]}\n";
+  const Said bare = ImportCsv(folder, csv, Replaced(kCupMap, table, ""), {"--check"});
+  EXPECT_EQ(bare.exit_code, 0) << bare.err;
+  EXPECT_NE(bare.err.find("what it stands on could be 'table"), std::string::npos) << bare.err;
+  EXPECT_EQ(bare.err.find("unit"), std::string::npos) << bare.err;
+  const std::string far = Replaced(kCupMap, "[0, 0, 0.7]", "[35, 120, 90.7]");
+  EXPECT_EQ(ImportCsv(folder, csv, far, {"--check"}).err, "");
+  const Said wrong = ImportCsv(folder, csv, Replaced(far, "unit: m", "unit: cm"), {"--check"});
+  EXPECT_NE(wrong.err.find("hint: unit: m; or"), std::string::npos) << wrong.err;
+}
+
 TEST(ImportWarnings, BracesWithoutQuotesAreExplained) {
   const auto folder = FreshFolder("import_warnings");
   const Said said =

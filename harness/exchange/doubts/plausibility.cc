@@ -5,6 +5,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
 
 #include "harness/exchange/poses/table_layout.h"
 
@@ -17,7 +20,15 @@ constexpr double kLeastSpeed_m_per_s = 0.02, kMostSpeed_m_per_s = 20;  ///< of w
 constexpr double kJump_m = 0.05;  ///< into a pose that stands for none
 constexpr double kNear_m = 0.5;   ///< something gets so near to what stands
 
-bool IsPlausibleRate(double rate_hz) { return rate_hz >= 10 && rate_hz <= 1000; }
+/// In which unit times would be of a usual rate, or "". `rate`: poses per unit of the file.
+std::string LikelyTimes(double rate) {
+  constexpr std::array<std::pair<const char*, double>, 4> kUnits = {
+      {{"seconds", 1}, {"milliseconds", 1e3}, {"microseconds", 1e6}, {"nanoseconds", 1e9}}};
+  for (const auto& [unit, per_second] : kUnits)
+    if (const double hz = rate * per_second; hz >= 10 && hz <= 1000)
+      return fmt::format("; the times look like {}", unit);
+  return "";
+}
 
 /// The fastest that any body usually is, in the file's unit.
 double UsualSpeed(const PoseFile& poses) {
@@ -138,14 +149,9 @@ class Judge {
       guess.remedy = "correct rate_hz or time_unit";
       return guess;
     }
-    guess.signs.push_back(
-        fmt::format("poses are {:.4g} s apart: {:.4g} Hz{}", step_s, rate_hz,
-                    poses_.counts_frames             ? ""
-                    : IsPlausibleRate(rate_hz * 1e3) ? "; the times look like milliseconds"
-                    : IsPlausibleRate(rate_hz * 1e6) ? "; the times look like microseconds"
-                    : IsPlausibleRate(rate_hz * 1e9) ? "; the times look like nanoseconds"
-                    : IsPlausibleRate(rate_hz / 1e3) ? "; the times look a thousand times longer"
-                                                     : ""));
+    const double unit_s = map_.time_unit ? map_.SecondsPerUnit() : 1;
+    guess.signs.push_back(fmt::format("poses are {:.4g} s apart: {:.4g} Hz{}", step_s, rate_hz,
+                                      poses_.counts_frames ? "" : LikelyTimes(rate_hz * unit_s)));
     const double speed_m_per_s = UsualSpeed(poses_) * map_.MetresPerUnit();
     if (poses_.counts_frames) {
       guess.signs.push_back("they are whole numbers that grow by 1 each");

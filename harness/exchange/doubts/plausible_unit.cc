@@ -153,8 +153,9 @@ class UnitGuesser {
   }
   bool PlacesFit(double scale) const {
     const double nearest_m = NearestApproach(poses_, map_, scale).distance_m;
-    return MotionFits(scale) && lengths_.from_origin * scale <= kFarFromOrigin_m &&
-           (std::isinf(nearest_m) || nearest_m < kAt_m);
+    if (std::isinf(nearest_m))
+      return MotionFits(scale) && lengths_.from_origin * scale <= kFarFromOrigin_m;
+    return MotionFits(scale) && nearest_m < kAt_m;
   }
 
   std::string MotionLooksWrong(double scale) const {

@@ -21,6 +21,7 @@ namespace {
 
 constexpr double kOnTop_m = 0.08;  ///< lie_about of grammar/library/support_from_motion.grammar
 constexpr double kHigh_m = 1.6;
+constexpr double kTableHigh_m = 0.75, kMovesThere_m = 0.03;
 constexpr double kOffTop_m = 0.015;
 constexpr double kGrips_m = 0.1;  ///< farther off its box, a hand that moves does not hold it
 constexpr double kLeast_s = 1;    ///< a shorter rest says nothing
@@ -103,6 +104,18 @@ RestPoses RestPosesOf(const episode::Recording& episode, std::size_t thing) {
   return rests;
 }
 
+/// Whether something moves in the unit in which this would be the height of a table. Else only the
+/// origin is far.
+bool MovesInUnitOfTable(const episode::Recording& episode, double height_m) {
+  const auto& entities = episode.header.entity_table.entities;
+  Eigen::AlignedBox3d extent;
+  for (const episode::EpisodeFrame& frame : episode.frames)
+    for (std::size_t i = 0; i < entities.size(); ++i)
+      if (IsMovable(entities[i]) || entities[i].classes.front() == "Hand")
+        if (grammar::IsTracked(frame.entities[i])) extent.extend(frame.entities[i].p_WB_m);
+  return extent.diagonal().norm() * kTableHigh_m / height_m > kMovesThere_m;
+}
+
 }  // namespace
 
 std::vector<std::string> RestOddly(const episode::Recording& episode,
@@ -141,7 +154,8 @@ std::vector<std::string> RestOddly(const episode::Recording& episode,
       "0.04]}}'{}",
       fmt::join(names, ", "), names.size() == 1 ? "rests" : "rest", height_m, 100 * kOnTop_m,
       Tenths(middle.x()), Tenths(middle.y()), height_m - 0.02, size.x(), size.y(),
-      height_m > kHigh_m ? "; that is higher than people work: is unit right?"
+      height_m > kHigh_m && MovesInUnitOfTable(episode, height_m)
+          ? "; that is higher than people work: is unit right?"
       : height_m < lowest_top_m - kOnTop_m && std::isfinite(lowest_top_m)
           ? "; all that the map places is higher: is unit right?"
           : ""));
