@@ -47,6 +47,8 @@ const opened = (options) => openPage({file: FILE, viewport: {width: 1400, height
 test('labels, events and differences are rows, with the figures of score; the worst take is first', async () => {
   const {page, seen, close} = await opened();
   assert.deepEqual(await page.evaluate(() => window.prehendReport.scenarios()), ['take2', 'take1']);
+  for (const call of ['labelsOf', 'cursorOf', 'setCursor', 'openReplay'])
+    await assert.rejects(page.evaluate((name) => window.prehendReport[name](), call), /no scenario is called 'undefined'; scenarios\(\) lists them/);
   assert.deepEqual(await page.locator('section.chosen p.sides span').allTextContents(), ['labels', 'pick_and_place_from_motion']);
   const lanes = await page.locator('section.chosen svg.timeline').evaluate((svg) => {
     const top = (each) => each.getBoundingClientRect().top;

@@ -186,7 +186,7 @@
         return bar.setAttribute('x', xAt(section, (begin + end) / 2));
       }
       bar.setAttribute('x', xAt(section, begin));
-      bar.setAttribute('width', Math.max(1.5, (end - begin) * scale));
+      bar.setAttribute('width', Math.max(2.5, (end - begin) * scale));
     });
     const right = svg.viewBox.baseVal.width - kRight;
     svg.querySelector('line.base').setAttribute('x2', right);
@@ -199,8 +199,8 @@
       const grid = line.cloneNode(), text = label.cloneNode();
       grid.setAttribute('x1', xAt(section, k * step));
       grid.setAttribute('x2', xAt(section, k * step));
-      text.setAttribute('x', xAt(section, k * step));
       text.textContent = Number((k * step).toFixed(3));
+      text.setAttribute('x', Math.min(xAt(section, k * step), svg.viewBox.baseVal.width - 3.6 * text.textContent.length));
       svg.prepend(grid, text);
     }
     mark(section, section.cursor || 0);
@@ -491,7 +491,11 @@
     some.forEach((section) => section.querySelectorAll('details').forEach((each) => { each.open = true; }));
   });
 
-  function sectionOf(id) { return sections.find((section) => section.id === id); }
+  function sectionOf(id) {
+    const found = sections.find((section) => section.id === id);
+    if (!found) throw new Error("no scenario is called '" + id + "'; scenarios() lists them");
+    return found;
+  }
   window.prehendReport = {
     scenarios: () => sections.map((section) => section.id),
     setCursor: (id, seconds) => setCursor(sectionOf(id), seconds),
@@ -501,7 +505,7 @@
       return openReplay(sectionOf(id));
     },
     // For sides.js.
-    page: {sections, timelineOf, button, inOrder, setCursor, show: (section) => {
+    page: {sections, sectionOf, timelineOf, button, inOrder, setCursor, show: (section) => {
       if (chosen !== section) open(section);
       history.replaceState(null, '', link(section));
     }},

@@ -2,7 +2,7 @@
 // The script of the report page, after page.js: what several sides say, and the last runs.
 (function () {
   'use strict';
-  const {sections, timelineOf, button, inOrder, setCursor, show} = window.prehendReport.page;
+  const {sections, sectionOf, timelineOf, button, inOrder, setCursor, show} = window.prehendReport.page;
 
   // Labels, grammars and others beside each other: at each time of an event at which one of them says something else, one
   // side can be accepted. What is saved are all labels, with these changes, in the clock of the episode.
@@ -75,7 +75,8 @@
   function stepDifference(by) {
     const all = sides.length === 0 ? [] : inOrder().flatMap(differencesOf);
     if (all.length === 0) return;
-    go(all[Math.min(Math.max(difference ? all.indexOf(difference) + by : 0, 0), all.length - 1)]);
+    const at = difference ? all.indexOf(difference) + by : all.findIndex((span) => span.section.row.matches('[aria-current]'));
+    go(all[Math.min(Math.max(at, 0), all.length - 1)]);
   }
   function accept(span, side) {
     span.side = side;
@@ -140,5 +141,5 @@
     if (event.key === 'd' || event.key === 'D') stepDifference(event.key === 'd' ? 1 : -1);
     if (difference && Number(event.key) >= 1 && Number(event.key) <= sides.length) accept(difference, Number(event.key) - 1);
   });
-  window.prehendReport.labelsOf = (id) => labelsOf(sections.find((section) => section.id === id));
+  window.prehendReport.labelsOf = (id) => labelsOf(sectionOf(id));
 }());
