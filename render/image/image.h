@@ -27,8 +27,6 @@ enum class PngKind {
 
 /// The bytes of a PNG file; none of an image that is empty.
 std::string EncodePng(const Image& image, PngKind kind = PngKind::kExact);
-/// False if the file could not be written.
-bool WritePng(const Image& image, const std::string& path, PngKind kind = PngKind::kExact);
 /// An empty image if the file is missing, damaged or larger than a picture may be.
 Image ReadPng(const std::string& path);
 /// The same of the bytes of a file.

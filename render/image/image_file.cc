@@ -5,21 +5,14 @@
 #include <png.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <memory>
 
 #include "physics/base/check.h"
 #include "render/image/image.h"
 
 namespace prehend::render {
 namespace {
-
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-using File = std::unique_ptr<std::FILE, CloseFile>;
 
 std::uint64_t HashBytes(std::uint64_t hash, const void* bytes, std::size_t size) {
   constexpr std::uint64_t kPrime = 0x100000001b3;
@@ -105,15 +98,6 @@ std::string EncodePng(const Image& exact, PngKind kind) {
   const bool written = info != nullptr && WriteRows(png, info, image, kind, row.data(), &bytes);
   png_destroy_write_struct(&png, &info);
   return written ? bytes : std::string();
-}
-
-bool WritePng(const Image& image, const std::string& path, PngKind kind) {
-  const std::string bytes = EncodePng(image, kind);
-  if (bytes.empty()) return false;
-  File file(std::fopen(path.c_str(), "wb"));
-  const bool written =
-      file != nullptr && std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
-  return written && std::fclose(file.release()) == 0;
 }
 
 Image ReadPng(const std::string& path) {

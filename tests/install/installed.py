@@ -65,6 +65,15 @@ class Installed(unittest.TestCase):
         run(self.prehend, "check", "slide/four_centimetres_are_a_slide", cwd=self.elsewhere)
         self.assertEqual(before, sorted(self.prefix.rglob("*")))
 
+        for words in (["accept", "milk_carton_wrap", "--reason", "x"], ["scenario", "rename", "milk_carton_wrap", "x"]):
+            run(self.prehend, *words, cwd=self.elsewhere, code=2, CI="")
+        self.assertEqual(before, sorted(self.prefix.rglob("*")))
+
+    def test_answers_questions(self):
+        run(self.prehend, "episode", "knowledge", "milk_carton_wrap", "-o", "kb", cwd=self.elsewhere)
+        goal = "entity(Act, [an, action, [type, 'Grasping']]), occurs(Act, [Start, End])"
+        self.assertIn("Start", run(self.prehend, "episode", "ask", "kb", goal, cwd=self.elsewhere))
+
     def test_says_its_version_in_all_places(self):
         version = re.match(r"prehend (\d+\.\d+\.\d+)", run(self.prehend, "--version", cwd=self.elsewhere))[1]
         self.assertIn(f'PREHEND_VERSION "{version}"', (self.prefix / "include/prehend/version.h").read_text())

@@ -84,9 +84,12 @@ bool IsOwnProject(const std::string& root) {
   return !fs::is_directory(fs::path(root) / kLibrary, error);
 }
 
+bool IsInstalled(const std::string& root) {
+  return root == ShippedRoot() && root.ends_with(kInstalled);
+}
+
 std::string BuildFolder(const std::string& root) {
-  const bool is_installed = root == ShippedRoot() && root.ends_with(kInstalled);
-  return is_installed ? "build" : (fs::path(root) / "build").string();
+  return IsInstalled(root) ? "build" : (fs::path(root) / "build").string();
 }
 
 bool IsCalledIn(const std::string& root) {

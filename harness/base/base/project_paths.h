@@ -30,6 +30,12 @@ std::string ShippedRoot();
 /// Whether `root` is a project of one's own, which uses what ships.
 bool IsOwnProject(const std::string& root);
 
+/// Whether `root` is what was installed with the program, which no command changes.
+bool IsInstalled(const std::string& root);
+inline constexpr const char* kStaysInstalled =
+    "what is installed is not changed; a project of your own has scenarios and goldens: "
+    "prehend new --project DIR";
+
 /// Where what is made goes: ROOT/build; of what is installed, `build` in the working directory.
 std::string BuildFolder(const std::string& root);
 

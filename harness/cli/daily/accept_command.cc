@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "harness/base/base/project_paths.h"
 #include "harness/base/base/quoting.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/episode/find_episodes.h"
@@ -61,7 +62,8 @@ tl::expected<episode::ScenarioFile, ExitCode> ScenarioWithGolden(const std::stri
   auto file = FindScenarioOrComplain(typed, context);
   if (file && !file->in_project)
     return refuse(
-        "only scenarios in scenarios/ have goldens; move the file there and accept it by name");
+        "only scenarios in scenarios/ of this project have goldens; a copy there is accepted by "
+        "name");
   return file;
 }
 
@@ -90,6 +92,7 @@ ExitCode AcceptRecordings(const std::string& typed, const suite::AcceptRequest& 
 ExitCode RunAccept(const ParsedOptions& options, const CommandContext& context) {
   if (context.in_ci)
     return Refuse(context, "accept is disabled where CI is set: a golden is a person's decision");
+  if (IsInstalled(context.root)) return Refuse(context, kStaysInstalled);
   const std::string typed = options.Text("scenario");
   std::error_code error;
   const episode::EpisodeKind kind = episode::EpisodeKindOf(typed);

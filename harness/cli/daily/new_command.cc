@@ -78,6 +78,8 @@ ExitCode MakeProject(const std::string& typed, const CommandContext& context) {
   namespace fs = std::filesystem;
   const fs::path folder = typed;
   std::error_code error;
+  if (ReadableName(typed) != typed)
+    return Refuse(context, "--project: found " + ReadableName(typed) + ", wanted printable text");
   if (fs::exists(folder, error) &&
       !(fs::is_directory(folder, error) && fs::is_empty(folder, error)))
     return Refuse(context, "--project: found " + ReadableName(typed) +
@@ -91,7 +93,7 @@ ExitCode MakeProject(const std::string& typed, const CommandContext& context) {
     if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
     context.out << (folder / name).string() << "\n";
   }
-  context.out << "next:\n  cd " << ShellQuoted(typed) << "\n";
+  context.out << "next:\n  cd " << ShellQuoted(typed[0] == '-' ? "./" + typed : typed) << "\n";
   for (const char* command : {"run", "check", "review"}) {
     const std::vector<std::string> words = {command, "carton_is_held_still"};
     context.out << "  " << CommandText(words) << "\n";

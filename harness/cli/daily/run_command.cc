@@ -198,7 +198,7 @@ void Print(const episode::LoadedRun& loaded, const episode::RunResult& run,
     if (measure) context.out << episode::MeasurementText(episode::Measure(run));
     context.out << std::flush;
   }
-  context.err << truth::TextOfContradicted(claims);
+  context.err << truth::TextOfUndecided(claims) << truth::TextOfContradicted(claims);
 }
 
 ExitCode PlayOne(const episode::ScenarioFile& file, const episode::RunRequest& request,

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "harness/base/base/atomic_file.h"
+#include "harness/base/base/project_paths.h"
 #include "harness/base/base/text_file.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/run/load_run.h"
@@ -200,6 +201,7 @@ std::string WhyNotRenamed(const std::string& typed, const std::string& root, Ren
         "found '{}', wanted NAME or SKILL/NAME of small letters, digits and '_', a letter first",
         typed);
   if (!renamed.from.in_project) return renamed.from.path + " is no scenario of this project";
+  if (IsInstalled(root)) return kStaysInstalled;
   renamed.path = fs::path(root) / "scenarios" / renamed.skill / (renamed.name + ".yaml");
   std::error_code error;
   if (fs::exists(renamed.path, error)) return renamed.path.string() + " is there already";

@@ -198,7 +198,7 @@ class LineWatcher {
         context_.err << fmt::format("prehend: {}: {} lines in all, the first: {}\n", name_, count,
                                     first);
     }
-    if (!stream_.says_its_end() && !live_)
+    if (!stream_.says_its_end() && !live_ && context_.out)  // else it was not read to its end
       context_.err << fmt::format(
           "prehend: {} ended after line {} without 'end_tick': what was open ends there\n", name_,
           line_);

@@ -267,6 +267,10 @@ class ConditionBuilder {
     condition.joint = JointOf(condition.body);
     if ((wanted.joint_above || wanted.joint_below) && condition.joint < 0)
       errors_.Add(wanted.where, fmt::format("entity: '{}' has no joint", wanted.entity));
+    if (wanted.share < 1 && !scene_.bodies[condition.body.index()].grains)
+      errors_.Add(
+          wanted.where,
+          fmt::format("share: '{}' is not of grains; its centre is inside or not", wanted.entity));
     if (wanted.at_s && *wanted.at_s > latest_s_)
       errors_.Add(
           wanted.where,

@@ -246,8 +246,9 @@ void CheckLength(const ScenarioYaml& entry, const physics::Script& script, Diagn
     total_s += physics::DurationOf(script.stages[i]);
     const Where where = entry.script[i].front().name_where;
     if (total_s > kMaxDuration_s) {
-      return errors.Add(
-          where, fmt::format("the script is longer than {} s at this point", kMaxDuration_s));
+      return errors.Add(where,
+                        fmt::format("the script and settle_s are longer than {} s at this point",
+                                    kMaxDuration_s));
     }
     if (poses > kMaxPoses)
       return errors.Add(where, fmt::format("more than {} poses at this point", kMaxPoses));

@@ -53,7 +53,7 @@ std::string DrawOne(const render::Painter& painter, const scenario::Scenario& sc
 std::string WriteImage(const render::Painter& painter, const render::Image& image,
                        const std::string& file, render::PngKind kind = render::PngKind::kExact) {
   if (image.rgb.empty()) return painter.error();
-  return render::WritePng(image, file, kind) ? "" : "cannot write " + file;
+  return WriteTextFile(file, render::EncodePng(image, kind));
 }
 
 PictureResult DrawEach(const render::Painter& painter, const scenario::Scenario& scenario,
@@ -328,7 +328,7 @@ bool WritePictureDifference(const std::string& golden_file, const std::string& d
                             const std::string& file) {
   const render::Image golden = render::ReadPng(golden_file), drawn = render::ReadPng(drawn_file);
   if (golden.rgb.empty() || !render::CompareImages(golden, drawn).same_size) return false;
-  return render::WritePng(PaleWithRed(golden, drawn), file);
+  return WriteTextFile(file, render::EncodePng(PaleWithRed(golden, drawn))).empty();
 }
 
 struct ScenePainter::State {

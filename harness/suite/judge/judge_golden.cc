@@ -212,8 +212,9 @@ Findings JudgeGolden(const GoldenComparison& compared, const CheckedRun& checked
                      const std::string& cause) {
   if (!compared.has_golden)
     return {{.exit_code = ExitCode::kPending,
-             .reason = checked.in_project ? "no golden yet"
-                                          : "no golden: only scenarios below scenarios/ have one",
+             .reason = checked.in_project
+                           ? "no golden yet"
+                           : "no golden: only scenarios in scenarios/ of this project have one",
              .details = GroundTruthText(compared.truth)}};
   Findings findings;
   if (compared.Differs()) {

@@ -13,6 +13,10 @@ std::string TempFile(const std::string& name) {
   return testing::TempDir() + "prehend_image_file_test_" + name;
 }
 
+void WritePng(const Image& image, const std::string& file) {
+  std::ofstream(file, std::ios::binary) << EncodePng(image);
+}
+
 Image Gradient(int width_px, int height_px) {
   Image image{width_px, height_px, {}};
   for (int i = 0; i < width_px * height_px * 3; ++i)
@@ -24,7 +28,7 @@ TEST(ImageFileTest, PngRoundTripKeepsEveryPixel) {
   const std::string file = TempFile("round_trip.png");
   for (const auto& [width, height] : {std::pair{1, 1}, {3, 2}, {257, 31}}) {
     const Image image = Gradient(width, height);
-    ASSERT_TRUE(WritePng(image, file));
+    WritePng(image, file);
     const Image back = ReadPng(file);
     EXPECT_EQ(back.width_px, width);
     EXPECT_EQ(back.height_px, height);
@@ -34,10 +38,9 @@ TEST(ImageFileTest, PngRoundTripKeepsEveryPixel) {
   std::remove(file.c_str());
 }
 
-TEST(ImageFileTest, WritingFailsAsAValue) {
-  EXPECT_FALSE(WritePng(Gradient(2, 2), TempFile("no_such_folder") + "/x.png"));
-  EXPECT_FALSE(WritePng({}, TempFile("empty.png")));
-  EXPECT_FALSE(WritePng({.width_px = 5, .height_px = 5, .rgb = {1, 2, 3}}, TempFile("short.png")));
+TEST(ImageFileTest, WhatIsNoImageHasNoBytes) {
+  EXPECT_EQ(EncodePng({}), "");
+  EXPECT_EQ(EncodePng({.width_px = 5, .height_px = 5, .rgb = {1, 2, 3}}), "");
 }
 
 TEST(ImageFileTest, ReadingRubbishGivesNothing) {
@@ -45,7 +48,7 @@ TEST(ImageFileTest, ReadingRubbishGivesNothing) {
   const std::string file = TempFile("rubbish.png");
   std::ofstream(file) << "this is no picture";
   EXPECT_TRUE(ReadPng(file).rgb.empty());
-  ASSERT_TRUE(WritePng(Gradient(64, 64), file));
+  WritePng(Gradient(64, 64), file);
   std::ifstream whole(file, std::ios::binary);
   std::string bytes(std::istreambuf_iterator<char>(whole), {});
   std::ofstream(file, std::ios::binary) << bytes.substr(0, bytes.size() / 2);

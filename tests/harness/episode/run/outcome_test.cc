@@ -123,6 +123,8 @@ TEST(Outcome, RefusesWhatIsNotThere) {
             "16:10: entity: no entity is called 'mlik' | did you mean 'milk'?\n");
   EXPECT_EQ(scenario::Brief(ErrorsOf(Read("  open: [{entity: milk, joint_above: 0.5}]\n"))),
             "16:10: entity: 'milk' has no joint\n");
+  EXPECT_EQ(scenario::Brief(ErrorsOf(Read("  in: [{entity: milk, inside: table, share: 0.5}]\n"))),
+            "16:8: share: 'milk' is not of grains; its centre is inside or not\n");
   EXPECT_EQ(scenario::Brief(ErrorsOf(Read("  kept: [{entity: milk, inside: tabel}]\n"))),
             "16:33: inside: no entity is called 'tabel' | did you mean 'table'?\n");
 }

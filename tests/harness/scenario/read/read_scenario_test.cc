@@ -165,7 +165,7 @@ TEST(ReadScenario, LimitsOnTheWhole) {
   std::string stages;
   for (int i = 0; i < 7; ++i) stages += "  - right_hand: {wait_s: 600}\n";
   EXPECT_EQ(ErrorsAbout(ProbeWith("pictures:\n", stages + "pictures:\n")),
-            "15:5: the script is longer than 1800 s at this point\n");
+            "15:5: the script and settle_s are longer than 1800 s at this point\n");
 
   std::string many;
   for (std::size_t i = 0; i <= kMaxBeats; ++i) many += "  - right_hand: {wait_s: 0.01}\n";

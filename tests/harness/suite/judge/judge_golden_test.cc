@@ -39,7 +39,7 @@ TEST_F(JudgeGoldenTest, WithoutGoldenItIsPending) {
   EXPECT_EQ(findings[0].details, "") << "the ground truth agrees";
   checked_.in_project = false;
   EXPECT_EQ(JudgeGolden(compared, checked_, "")[0].reason,
-            "no golden: only scenarios below scenarios/ have one");
+            "no golden: only scenarios in scenarios/ of this project have one");
 }
 
 TEST_F(JudgeGoldenTest, ADifferenceIsToldWithItsContextAndItsCause) {
