@@ -340,7 +340,8 @@ TEST_F(CommandLine, OnlyScenariosOfTheProjectHaveGoldens) {
                                       "carton_waits"));
   const Said ended = Do("accept " + loose.string() + " --reason because");
   EXPECT_EQ(ended.exit_code, 2);
-  EXPECT_NE(ended.err.find("only scenarios in scenarios/ of this project have goldens"), std::string::npos)
+  EXPECT_NE(ended.err.find("only scenarios in scenarios/ of this project have goldens"),
+            std::string::npos)
       << ended.err;
   EXPECT_FALSE(fs::exists(root_ / "golden"));
 }

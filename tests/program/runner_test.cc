@@ -203,7 +203,8 @@ TEST_F(Runner, FilesAreCheckedToo) {
   EXPECT_EQ(scenarios[0].at("verdict"), "passed");
   EXPECT_EQ(scenarios[1].at("scenario"), loose.string());
   EXPECT_EQ(scenarios[1].at("verdict"), "pending");
-  EXPECT_EQ(scenarios[1].at("reason"), "no golden: only scenarios in scenarios/ of this project have one");
+  EXPECT_EQ(scenarios[1].at("reason"),
+            "no golden: only scenarios in scenarios/ of this project have one");
   EXPECT_EQ(scenarios[1].at("command"), "prehend check '" + loose.string() + "'");
   EXPECT_FALSE(fs::exists(root_ / "build/pending"));
   EXPECT_EQ(Prehend({"score", loose.string()}, environment).exit_code, 0);

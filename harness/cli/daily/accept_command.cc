@@ -61,9 +61,7 @@ tl::expected<episode::ScenarioFile, ExitCode> ScenarioWithGolden(const std::stri
                   "' may match several scenarios; accept takes one scenario at a time, by name");
   auto file = FindScenarioOrComplain(typed, context);
   if (file && !file->in_project)
-    return refuse(
-        "only scenarios in scenarios/ of this project have goldens; a copy there is accepted by "
-        "name");
+    return refuse("only scenarios in scenarios/ of this project have goldens; accept a copy there");
   return file;
 }
 

@@ -94,10 +94,8 @@ ExitCode MakeProject(const std::string& typed, const CommandContext& context) {
     context.out << (folder / name).string() << "\n";
   }
   context.out << "next:\n  cd " << ShellQuoted(typed[0] == '-' ? "./" + typed : typed) << "\n";
-  for (const char* command : {"run", "check", "review"}) {
-    const std::vector<std::string> words = {command, "carton_is_held_still"};
-    context.out << "  " << CommandText(words) << "\n";
-  }
+  for (const std::string command : {"run", "check", "review"})
+    context.out << "  " << CommandText({command, "carton_is_held_still"}) << "\n";
   context.out << "  " << CommandText({"accept", "carton_is_held_still"}) << " --reason \"...\"\n";
   return ExitCode::kAgrees;
 }

@@ -123,17 +123,14 @@ ExitCode CountTrials(const ParsedOptions& options, const episode::RunRequest& re
   } else {
     context.out << episode::TrialTable(*report, TrialCommand(options));
   }
-  const auto lost = std::ranges::count_if(report->results, [](const episode::TrialResult& result) {
-    return !result.not_recorded.empty();
-  });
+  const auto is_lost = [](const auto& trial) { return !trial.not_recorded.empty(); };
+  const auto lost = std::ranges::count_if(report->results, is_lost);
   if (lost == 0 && options.Has("--record")) {
     const std::string problem = episode::EndPart(file, plan);
     if (!problem.empty()) return Complain(context, ExitCode::kFailure, "--record: " + problem);
   }
   if (lost == 0) return ExitCode::kAgrees;
-  const auto first = std::ranges::find_if(report->results, [](const episode::TrialResult& result) {
-    return !result.not_recorded.empty();
-  });
+  const auto first = std::ranges::find_if(report->results, is_lost);
   return Complain(context, ExitCode::kFailure,
                   fmt::format("--record: {} of {} trials are not in the file; the first, {}: {}",
                               lost, report->results.size(), first->trial, first->not_recorded));
