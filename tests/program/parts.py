@@ -189,7 +189,9 @@ def hostile(part, folder):
         assert "the file is damaged: " in told and said in told, (sql, told[:300])
     # Each of many events that lie in one another has the others as parts: a question that does not ask for them does not look.
     columns = "event(episode, event, begin_tick, end_tick, decided_tick, open_end, begin_s, end_s, duration_s)"
-    after(many.format(30000, columns + " SELECT 1, 'contact', i % 1000, i % 1000 + 300, 0, 0, 0, 0, 0"), "episode", "query", "--count-by", "event", code=3)
+    rate = "(SELECT ticks_per_second * 1.0 FROM episode WHERE id = 1)"
+    times = f"i % 1000, i % 1000 + 300, 0, 0, i % 1000 / {rate}, (i % 1000 + 300) / {rate}, 300 / {rate}"
+    after(many.format(30000, columns + f" SELECT 1, 'contact', {times}"), "episode", "query", "--count-by", "event", code=3)
 
 
 def trials(folder):

@@ -82,6 +82,9 @@ Result<std::map<int, episode::TrialResult>> KnownTrials(const std::string& file,
 
 ExitCode CountTrials(const ParsedOptions& options, const episode::RunRequest& request,
                      const std::string& id, const CommandContext& context) {
+  const std::string file = options.Text("--record");
+  if (options.Has("--record") && !episode::IsEpisodeFile(file))
+    return Refuse(context, "--record: many trials need an episode file, NAME.episodes");
   const grammar::Diagnostics why_not = episode::WhyNotTried(request, context.root);
   if (!why_not.empty()) return Complain(context, why_not);
   const episode::Plan plan = PlanOfTrials(options, request, id, context);
@@ -90,11 +93,8 @@ ExitCode CountTrials(const ParsedOptions& options, const episode::RunRequest& re
                                   .part = plan.number,
                                   .parts = plan.count,
                                   .jobs = options.IntOr("--jobs", CoreCount())};
-  const std::string file = options.Text("--record");
   tl::expected<episode::WriteLock, std::string> lock;
   if (options.Has("--record")) {
-    if (!episode::IsEpisodeFile(file))
-      return Refuse(context, "--record: many trials need an episode file, NAME.episodes");
     lock = episode::LockToRecord(file, episode::Writer::kAlone);
     if (!lock) return Refuse(context, "--record: " + lock.error());
     auto known = KnownTrials(file, plan);
