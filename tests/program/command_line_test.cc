@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 
@@ -188,6 +190,29 @@ TEST_F(CommandLine, PrintedCommandsHaveTheNameThatTheProgramWasCalledBy) {
             "  see: ./run scenario schema --help\n");
   const Said help = Prehend({"list", "--help"}, environment);
   EXPECT_NE(help.out.find("\n  ./run list --json\n"), std::string::npos) << help.out;
+}
+
+TEST_F(CommandLine, AnUnknownOptionIsNamedBeforeAMissingArgument) {
+  const std::vector<std::string> environment = {"PREHEND_HOME=" + root_.string()};
+  EXPECT_EQ(Prehend({"run", "--nosuch"}, environment).err.substr(0, 36),
+            "prehend: unknown option '--nosuch'\n ");
+  EXPECT_EQ(Prehend({"run", "--jsn"}, environment).err.substr(0, 55),
+            "prehend: unknown option '--jsn'; did you mean '--json'?");
+  EXPECT_EQ(Prehend({"run", "--json"}, environment).err.substr(0, 43),
+            "prehend: the argument 'scenario' is missing");
+}
+
+TEST_F(CommandLine, RecordingsThatAreNoTextAreCalledSo) {
+  const std::vector<std::string> environment = {"PREHEND_HOME=" + root_.string()};
+  for (const auto& [bytes, wanted] : std::map<std::string, std::string>{
+           {"", ": error: the file is empty\n"},
+           {std::string("\xff\xfe{\0}\0", 6), "error: expected UTF-8, found UTF-16"}}) {
+    const std::string file = (root_ / "strange.jsonl").string();
+    std::ofstream(file, std::ios::binary) << bytes;
+    const Said said = Prehend({"run", file}, environment);
+    EXPECT_EQ(said.exit_code, 2);
+    EXPECT_NE(said.err.find(wanted), std::string::npos) << said.err;
+  }
 }
 
 TEST_F(CommandLine, AnEmptyValueIsRefused) {

@@ -16,6 +16,8 @@ enum class Over { kNoInput, kAnything };
 
 /// In what AtomicFile says of an output that is an input: the user's mistake, no failure.
 inline constexpr std::string_view kIsRead = "it is what is read";
+/// Messages about a file that is not as it was written say this, and are about the input.
+inline constexpr std::string_view kIsDamaged = "the file is damaged";
 
 /// Replaces only regular files, and follows a link to one. It is not synchronised to the disk: it
 /// is safe from a crash of the program, not from a power cut.

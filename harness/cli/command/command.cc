@@ -127,8 +127,8 @@ ExitCode Complain(const CommandContext& context, ExitCode code, const std::strin
 ExitCode ComplainWithCorrection(const CommandContext& context, ExitCode code,
                                 const std::string& message,
                                 const std::vector<std::string>& corrected) {
-  const bool is_input = message.find(kIsRead) != std::string::npos ||
-                        message.find("the file is damaged") != std::string::npos;
+  const bool is_input =
+      message.find(kIsRead) != std::string::npos || message.find(kIsDamaged) != std::string::npos;
   if (is_input && code == ExitCode::kFailure)
     return ComplainWithCorrection(context, ExitCode::kBadInput, message, {});
   context.err << "prehend: " << message << "\n";

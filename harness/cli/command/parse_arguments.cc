@@ -144,19 +144,24 @@ ParsedArguments ParseOptions(const Command& command, const std::vector<OldName>&
                              const std::vector<std::string>& words, std::ptrdiff_t words_of_name) {
   CLI::App app(command.summary, "prehend " + command.name);
   Declare(command, app);
+  // CLI11 leaves over the word that ends the options.
+  const auto extras = [&app] {
+    std::vector<std::string> all = app.remaining();
+    if (const auto end = std::ranges::find(all, "--"); end != all.end()) all.erase(end);
+    return all;
+  };
   try {
     // CLI11 takes them reversed.
     app.parse(std::vector<std::string>(words.rbegin(), words.rend() - words_of_name));
   } catch (const CLI::Success&) {
     return InfoText{HelpOf(app)};
+  } catch (const CLI::RequiredError& error) {
+    if (extras().empty()) return Worded(error, command);
   } catch (const CLI::ParseError& error) {
     return Worded(error, command);
   }
-  std::vector<std::string> extras = app.remaining();
-  // CLI11 leaves over the word that ends the options.
-  if (const auto end = std::ranges::find(extras, "--"); end != extras.end()) extras.erase(end);
-  if (extras.empty()) return Chosen(command, app);
-  return UnexpectedWord(app, extras.front(), command.name, old_options, words);
+  if (extras().empty()) return Chosen(command, app);
+  return UnexpectedWord(app, extras().front(), command.name, old_options, words);
 }
 
 /// `typed`, the first word or the first two, names no command.

@@ -129,10 +129,13 @@ class TakeFinder {
     if (!in_folder.empty()) return std::nullopt;
     std::error_code error;
     if (!typed.ends_with(".yaml") && !typed.ends_with(".yml") &&
-        std::filesystem::is_regular_file(typed, error))
+        std::filesystem::is_regular_file(typed, error)) {
+      if (auto text = typed.ends_with(".jsonl") ? ReadTextFile(typed) : ""; !text)
+        return NotFound{.diagnostics = text.error()};
       return NotFound{.message = fmt::format(
                           "{} is neither a recording nor a scenario; of poses '{}' makes one",
                           typed, CommandText({"import", typed, "-o", "NAME.jsonl"}))};
+    }
     PREHEND_TRY(auto scenario, ScenarioNamed(typed, root_));
     Add(std::move(scenario), entry);
     return std::nullopt;

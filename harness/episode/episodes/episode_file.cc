@@ -9,6 +9,7 @@
 #include "harness/base/base/content_hash.h"
 #include "harness/episode/episodes/database.h"
 #include "harness/episode/episodes/record_episode.h"
+#include "harness/truth/timeline/event_text.h"
 
 namespace prehend::episode {
 namespace {
@@ -170,7 +171,8 @@ Result<grammar::Timeline> EpisodeFile::TimelineOf(const EpisodeRow& episode) con
                                    find.Double(6 + i), ticks[i]));
       for (; has_role && roles.Integer(0) <= id; has_role = roles.Step()) {
         if (roles.Integer(0) == id) event.roles.push_back({roles.Text(1), roles.Text(2)});
-        if (event.roles.size() > 8) throw Damage("an event has more than 8 roles");  // as a golden
+        if (event.roles.size() > truth::kMostRoles)
+          throw Damage(fmt::format("an event has more than {} roles", truth::kMostRoles));
       }
       for (; has_value && values.Integer(0) <= id; has_value = values.Step()) {
         if (values.Integer(0) == id)

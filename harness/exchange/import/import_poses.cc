@@ -23,7 +23,6 @@ namespace prehend::exchange {
 namespace {
 
 constexpr double kWholeStep = 0.9;  ///< of the usual step: a frame is missing, at an end
-constexpr double kGap = 1.5;        ///< of the usual step: longer is a gap
 constexpr double kUnmoved_m = 0.001, kSmoothedOff_m = 0.02, kFixedMoves_m = 0.03;
 constexpr double kTrembles_m = 0.0008;  ///< more than this hides how things move
 constexpr double kMostTrembling_m = 0.5, kTrembleRate_hz = 8;  ///< fewer poses: it is motion

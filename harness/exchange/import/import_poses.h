@@ -14,6 +14,9 @@
 
 namespace prehend::exchange {
 
+/// Of the usual step: longer is a gap, in a file as in what arrives live.
+inline constexpr double kGap = 1.5;
+
 /// What became of one entity.
 struct EntityReport {
   std::string name, from;  ///< from: the body, or "" if the map says where it stands

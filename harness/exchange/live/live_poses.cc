@@ -17,7 +17,6 @@ namespace {
 
 constexpr std::size_t kMostHeadLines = 200;
 constexpr std::size_t kMostSteps = 1000;
-constexpr double kGap = 1.5;  ///< of the usual step, as in an import
 
 bool IsJson(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \t");

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "grammar/base/diagnostic.h"
+#include "harness/base/base/atomic_file.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::show {
@@ -234,8 +235,7 @@ Watched Watch(const std::shared_ptr<const grammar::Program>& program,
     watched.problem = fmt::format(
         "the episode has more than {} frames, and all of them would have to be remembered",
         kMaxFrames);
-  } else if (past.frames() == 0 ||
-             played.failure.find("the file is damaged") != std::string::npos) {
+  } else if (past.frames() == 0 || played.failure.find(kIsDamaged) != std::string::npos) {
     watched.problem = played.failure.empty() ? "the episode has no frames" : played.failure;
   }
   return watched;

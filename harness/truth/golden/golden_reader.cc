@@ -22,7 +22,6 @@ namespace {
 using grammar::Tick;
 
 constexpr Tick kMaxTicksPerSecond = 1'000'000;
-constexpr std::size_t kMaxRolesInText = 8;
 constexpr int kMaxPlays = 1000;
 constexpr double kMaxSpread_ms = 1e7;
 
@@ -269,7 +268,7 @@ class GoldenReader {
   bool ReadRole(GoldenEvent& line, const std::string& key, std::size_t word_column) {
     const std::string value(Word());
     if (value.empty()) return Fail(fmt::format("expected a value for '{}'", key));
-    if (line.event.roles.size() == kMaxRolesInText) return FailAt(word_column, "too many roles");
+    if (line.event.roles.size() == kMostRoles) return FailAt(word_column, "too many roles");
     line.event.roles.push_back({key, value});
     return true;
   }
@@ -284,7 +283,7 @@ class GoldenReader {
     if (error != std::errc() || std::isnan(value.value))
       return FailAt(value_column, fmt::format("expected a number after '{}~', like 12.5N", name));
     value.unit = std::string(end, word.data() + word.size());
-    if (line.event.values.size() == kMaxRolesInText) return FailAt(word_column, "too many values");
+    if (line.event.values.size() == kMostRoles) return FailAt(word_column, "too many values");
     line.event.values.push_back(std::move(value));
     return true;
   }

@@ -18,6 +18,9 @@
 
 namespace prehend::truth {
 
+/// An event has at most so many roles, and at most so many values, wherever it is read.
+inline constexpr std::size_t kMostRoles = 8;
+
 /// Seconds with at least 4 decimals, and as many as it takes for TickAt() to find the same tick
 /// again.
 std::string SecondsText(grammar::Tick tick, grammar::Tick ticks_per_second);
