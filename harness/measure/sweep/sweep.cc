@@ -147,8 +147,7 @@ tl::expected<grammar::Timeline, std::string> TruthOf(const SweepRequest& request
 JudgedSetting Judged(const grammar::Timeline& truth, grammar::Timeline found,
                      const SweepRequest& request, grammar::Tick ticks) {
   if (request.truth == Truth::kOracle)
-    std::erase_if(found.events,
-                  [](const grammar::NamedEvent& event) { return !truth::OracleDefines(event); });
+    std::erase_if(found.events, [](const auto& event) { return !truth::OracleDefines(event); });
   const auto per_s = static_cast<double>(truth.ticks_per_second);
   const auto ms = [&](grammar::Tick offset) { return 1000 * static_cast<double>(offset) / per_s; };
   const LabelledEpisode episode = Labelled(truth, found, ticks);
@@ -171,36 +170,32 @@ JudgedSetting Judged(const grammar::Timeline& truth, grammar::Timeline found,
   return judged;
 }
 
-JudgedSettings LeftOut(const std::string& why, bool is_unread = false) {
-  return {.left_out = why, .is_unread = is_unread};
-}
-
 /// One episode under all settings. With labels these are its truth, at `index`.
 JudgedSettings JudgedEpisode(const episode::EpisodeName& name, std::size_t index,
                              const std::optional<exchange::LabelReading>& labels,
                              const SweepRequest& request, const Programs& programs,
                              episode::EpisodeOpener& opener, ProgressCounters::Tick& measured) {
   Result<episode::Episode> episode = opener.Open(name, {request.grammar, request.settings});
-  if (!episode) return LeftOut(grammar::Format(episode.error().front()), true);
+  if (!episode) return {.left_out = grammar::Format(episode.error().front()), .is_unread = true};
   const Result<grammar::Tick> end = episode->EndTick();
-  if (!end) return LeftOut("it did not come to a good end");
+  if (!end) return {.left_out = "it did not come to a good end"};
   tl::expected<grammar::Timeline, std::string> truth;
   if (labels) {
     const grammar::EntityTable table = episode->entities();
     Result<grammar::Timeline> labelled =
         labels->Truth(index, table.entities, table.ticks_per_second, *end);
-    if (!labelled) return LeftOut(grammar::Format(labelled.error().front()));
+    if (!labelled) return {.left_out = grammar::Format(labelled.error().front())};
     truth = std::move(*labelled);
   } else {
     truth = TruthOf(request, *episode, *programs.front());
   }
-  if (!truth) return LeftOut(truth.error());
+  if (!truth) return {.left_out = truth.error()};
   JudgedSettings judged;
   if (const auto* recording = episode->recording(); labels && recording)
     judged.moved = episode::MovedText(recording->header, recording->moved);
   for (const auto& program : programs) {
     Result<grammar::Timeline> found = episode->Segment(program);
-    if (!found) return LeftOut(grammar::Format(found.error().front()), true);
+    if (!found) return {.left_out = grammar::Format(found.error().front()), .is_unread = true};
     if (labels) {
       found = exchange::Compared(*found, labels->compared());
       (void)labels->TakeMoments(index, *truth, 0, *found);
@@ -342,7 +337,8 @@ Result<SweepResult> Sweep(const std::vector<episode::Take>& takes, const SweepRe
     std::vector<JudgedSettings> of_slice;
     if (said[slice].finished) of_slice = FromWire<std::vector<JudgedSettings>>(said[slice].output);
     for (std::size_t i = slice, k = 0; i < episodes.size(); i += slices, ++k) {
-      const JudgedSettings one = k < of_slice.size() ? of_slice[k] : LeftOut(said[slice].reason);
+      const JudgedSettings one =
+          k < of_slice.size() ? of_slice[k] : JudgedSettings{.left_out = said[slice].reason};
       if (one.settings.empty()) {
         result.left_out.push_back(episodes[i].scenario + ": " + one.left_out);
         if (one.is_unread) result.unread.push_back(result.left_out.back());
