@@ -563,7 +563,7 @@ TEST(Knowledge, HostileQueriesAreRefusedOrStopped) {
            {"entity(A, [an, deed])", "no kind of thing is called deed"},
            {"between(1, inf, X), X < 0", "took more than"},
            {"findall(X, between(1, inf, X), L)", "too much"},
-           {"length(L, N), N < 0", "the query"},
+           {"length(L, N), N < 0", "took more than"},
            {"X is 7 ** (7 ** 77)", ""}}) {
     const auto begin = std::chrono::steady_clock::now();
     // Only an endless query has to reach its limit; the others end before, on a busy machine, too.

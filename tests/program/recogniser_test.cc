@@ -88,36 +88,36 @@ json Figures(json score) {
 
 /// What `watch` prints, with an answer to each frame.
 std::string RepeatsWatch(const std::string& grammar, const std::string& events) {
-  return "import json, os, queue, subprocess, sys, threading\n"
+  return "import fcntl, json, os, subprocess, sys, termios, time\n"
          "print(json.dumps({'recogniser': 1, 'events': " +
          events +
          ", 'facts': ['poses', 'touches', 'trigger', 'joints', 'gazes']}), flush=True)\n"
          "watch = subprocess.Popen(['" +
          std::string(PREHEND_BINARY_DIR "/prehend") + "', 'grammar', 'watch', '-', '--grammar', '" +
          grammar +
-         "', '--json'], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1)\n"
-         "said = queue.Queue()\n"
-         "def read():\n"
-         "    for line in watch.stdout: said.put(line)\n"
-         "    said.put(None)\n"
-         "threading.Thread(target=read, daemon=True).start()\n"
-         "def show(wait):\n"
-         "    while True:\n"
-         "        try: line = said.get(timeout=wait)\n"
-         "        except queue.Empty: return\n"
-         "        if line is None: return\n"
+         "', '--json'], stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0)\n"
+         "os.set_blocking(watch.stdout.fileno(), False)\n"
+         "def works():  # it has not read everything, or does not wait for more\n"
+         "    unread = int.from_bytes(fcntl.ioctl(watch.stdin, termios.FIONREAD, bytes(4)), "
+         "'little')\n"
+         "    with open(f'/proc/{watch.pid}/stat') as stat: state = "
+         "stat.read().rpartition(')')[2]\n"
+         "    return unread or state.split()[0] not in 'SZ'\n"
+         "def show():\n"
+         "    for line in (watch.stdout.read() or b'').splitlines():\n"
          "        line = json.loads(line)\n"
          "        del line['decided_tick']\n"
          "        print(json.dumps(line), flush=True)\n"
          "for line in sys.stdin:\n"
-         "    watch.stdin.write(line)\n"
-         "    watch.stdin.flush()\n"
+         "    watch.stdin.write(line.encode())\n"
          "    tick = json.loads(line).get('tick')\n"
          "    if tick is None: continue\n"
-         "    show(0.05)\n"
+         "    while works(): time.sleep(0.0002)\n"
+         "    show()\n"
          "    print(json.dumps({'ready': tick}), flush=True)\n"
          "watch.stdin.close()\n"
-         "show(30)\n";
+         "os.set_blocking(watch.stdout.fileno(), True)\n"
+         "show()\n";
 }
 
 /// The events that the grammar of a recording finds in it, with their roles.
