@@ -9,7 +9,6 @@
 #include "harness/base/base/content_hash.h"
 #include "harness/episode/episodes/database.h"
 #include "harness/episode/episodes/record_episode.h"
-#include "harness/truth/timeline/event_text.h"
 
 namespace prehend::episode {
 namespace {
