@@ -164,6 +164,7 @@ class Engine final {
     bool only_others = false;     // it never looks at entities
     bool by_since = false;        // `until .. since`: only while others say that nothing leads on
     std::vector<int> slots = {};  // `until`: the references that it asks for
+    std::size_t of_until = 0;     // so many of them, not for what leads on
   };
   struct Following {               // of an instance that does so
     FrameNumber held = 0;          // the first frame that is kept for it
@@ -192,7 +193,11 @@ class Engine final {
     return edges;
   }
   template <typename Visit>
-  void ForEachFollowed(const RuleInstance& instance, const Visit& visit) const;
+  void ForEachFollowed(const RuleInstance& instance, std::size_t most, const Visit& visit) const;
+  template <typename Visit>
+  void ForEachFollowed(const RuleInstance& instance, const Visit& visit) const {
+    ForEachFollowed(instance, follows_[instance.rule].slots.size(), visit);
+  }
   static Bound Both(Bound a, Bound b);
   Bound BoundOf(InstanceId index) const;
   Bound BoundOf(NodeId node, RuleInstance& instance);

@@ -13,16 +13,19 @@
 // that they would have made.
 // Tested by tests/grammar/monitor_test.cc and tests/grammar/reference/reference_test.cc
 #include <algorithm>
+#include <span>
 
 #include "grammar/engine/engine.h"
 
 namespace prehend::grammar {
 
-// Those that an instance follows.
+// Those that an instance follows; of one that looks back, so many.
 template <typename Visit>
-void Engine::ForEachFollowed(const RuleInstance& instance, const Visit& visit) const {
+void Engine::ForEachFollowed(const RuleInstance& instance, std::size_t most,
+                             const Visit& visit) const {
   if (RuleOf(instance).form() != Form::kUntilSince) return ForEachReference(instance, visit);
-  for (const int slot : follows_[instance.rule].slots) {
+  const std::vector<int>& slots = follows_[instance.rule].slots;
+  for (const int slot : std::span(slots).first(std::min(most, slots.size()))) {
     const InstanceId reference = instance.references[static_cast<std::size_t>(slot)];
     if (reference != kNone) visit(reference);
   }
@@ -115,10 +118,10 @@ Engine::Follows Engine::WhenItFollows(const Rule& rule) const {
       program_->nodes[looks_back->since].op == Op::kOr && IsUnknownUntilTheEnd(looks_back->since);
   Follows follows{.closed = is_far || !rule.referenced};
   CollectAsked(*program_, looks_back->until, follows.slots);
+  follows.of_until = follows.slots.size();
   if (follows.closed) return follows;
-  const std::size_t of_until = follows.slots.size();
   CollectAsked(*program_, looks_back->since, follows.slots);
-  follows.closed = follows.by_since = follows.slots.size() > of_until;
+  follows.closed = follows.by_since = follows.slots.size() > follows.of_until;
   return follows;
 }
 
@@ -337,7 +340,9 @@ void Engine::CatchUp(RuleInstance& instance, FrameNumber end) {
   if (from_to != nullptr && !instance.open && begins_by_others_[instance.rule] != 0) {
     next = std::min(next, BoundOf(from_to->from, instance).known);
   } else {
-    ForEachFollowed(instance, [&](InstanceId index) {
+    // Of those that say that nothing leads on, one is enough.
+    if (follows_[instance.rule].by_since) next = std::min(next, RuledOutUntil(instance));
+    ForEachFollowed(instance, follows_[instance.rule].of_until, [&](InstanceId index) {
       if (next > following_[instance.index].resumes)
         next = std::min(next, instances_.KnownOf(instances_[index]));
     });
@@ -474,8 +479,9 @@ FrameNumber Engine::SettledByOthers(NodeId index, RuleInstance& instance, bool h
     return one_is_enough ? std::max(left, right) : std::min(left, right);
   }
   if (node.op != Op::kHolds) return 0;
-  const Bound bound = BoundOf(instances_.Resolve(instance, node.slot));
-  return bound.holds == holds ? bound.known : 0;
+  const InstanceId other = instances_.Resolve(instance, node.slot);
+  const bool is_open = other != kNone && instances_[other].open && instances_[other].certain;
+  return is_open == holds ? BoundOf(other).known : 0;  // else nobody is asked
 }
 
 // Up to where nothing begins or leads on by what others say.
