@@ -9,6 +9,8 @@
 namespace prehend::grammar {
 namespace {
 
+constexpr double kUntilItIsBound_m = 1e30;  // farther than anything gets
+
 // Entities must be in the entity table, ticks must rise, and each touch names its entities in
 // order.
 
@@ -82,7 +84,7 @@ void Engine::Wake(InstanceId index) {
   if (instance.follows) StopWaiting(instance);
   if (instance.awake || instance.rule == kNone) return;
   instance.awake = true;
-  instances_.RestNoMore(index);
+  instances_.RestNoMore(instance);
   instance.next = std::max<FrameNumber>(history_.now(), 0);
   if (auto* looks_back = instance.If<UntilSinceState>()) looks_back->approach_from = instance.next;
   const bool rested = instance.known == kNever;
@@ -96,16 +98,21 @@ void Engine::Wake(InstanceId index) {
 // trembles.
 void Engine::WakeWatchers(int entity, const std::vector<Watch>& watchers, bool gets_on) {
   for (const Watch& watch : watchers) {
-    const double rests_until_m = instances_.RestsUntil_m(watch.instance);
+    const double rests_until_m = watch.rests_until_m;
     if (rests_until_m > 0 &&
-        (!gets_on || (watch.other != kNone &&
-                      history_.Way_m(entity) + history_.Way_m(watch.other) < rests_until_m)))
+        (!gets_on || rests_until_m > kUntilItIsBound_m / 2 ||
+         (watch.other != kNone &&
+          history_.Way_m(entity) + history_.Way_m(watch.other) < rests_until_m)))
       continue;  // most of them
-    const RuleInstance& instance = instances_[watch.instance];
+    RuleInstance& instance = instances_[watch.instance];
     if (instance.awake || (rests_until_m > 0 && Ways_m(instance) < rests_until_m)) continue;
-    if (rests_until_m > 0) instances_.RestNoMore(watch.instance);
+    if (rests_until_m > 0) instances_.RestNoMore(instance);
     if (log_ == nullptr && instances_.NeedsOneThatRests(instance)) continue;
-    if (MayWake(instance)) Wake(watch.instance);
+    if (MayWake(instance)) {
+      Wake(watch.instance);
+    } else if (instances_.LacksItsGuard(instance)) {
+      instances_.RestUntil_m(instance, kUntilItIsBound_m);
+    }
   }
 }
 
@@ -134,7 +141,7 @@ bool Engine::RestsFarApart(RuleInstance& instance) {
   if (apart_m <= 0) return false;
   for (std::size_t role = 0; role < RuleOf(instance).roles.size(); ++role)
     apart_m -= history_.Tremble_m(instance.entities[role]);
-  if (apart_m > 0) instances_.RestUntil_m(instance.index, Ways_m(instance) + apart_m);
+  if (apart_m > 0) instances_.RestUntil_m(instance, Ways_m(instance) + apart_m);
   return true;
 }
 

@@ -309,6 +309,14 @@ void RuleInstances::UnwatchEntities(const RuleInstance& instance) {
   }
 }
 
+void RuleInstances::SetRest(const RuleInstance& instance, float rests_until_m) {
+  const Rule& rule = program_.rules[instance.rule];
+  for (std::size_t role = 0; role < rule.roles.size(); ++role)
+    if (rule.watches_pose[role])
+      pose_watchers_[instance.entities[role]][instance.watch_places[role]].rests_until_m =
+          rests_until_m;
+}
+
 // Before `instance` is freed: it is no watcher any more, and has to be made again when its guard
 // holds again.
 void RuleInstances::Unlink(InstanceId index, InstanceId watcher, std::vector<InstanceId>& orphans) {
@@ -341,10 +349,9 @@ void RuleInstances::Free(InstanceId index, std::vector<InstanceId>& orphans) {
   std::visit([](auto& state) { state.Reset(); }, instance.of_form);
   instance.watchers.clear();
   instance.past.Clear();
-  instance.dependents_made = instance.awaited = instance.followed = false;
+  instance.dependents_made = instance.awaited = instance.followed = instance.rests_apart = false;
   instance.reported = Kleene::kFalse;
   instance.moment = kNever;
-  RestNoMore(index);
   instance.style = kNoEntity;
   instance.rule = kNone;
   free_[instance.of_form.index()].push_back(index);

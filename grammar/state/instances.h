@@ -162,6 +162,7 @@ struct alignas(64) RuleInstance : InstanceKey {  // rule kNone: the instance is 
   bool follows : 1 = false;          ///< waits, and is as it was until one of those begins or ends
   bool followed : 1 = false;         ///< some instance follows this one
   bool by_itself : 1 = false;        ///< what its last step found may change with time alone
+  bool rests_apart : 1 = false;      ///< poses do not wake it yet, see Watch::rests_until_m
   bool awaited = false;              ///< some instance waits for this one to tell more
   Kleene reported = Kleene::kFalse;  ///< the truth at the newest frame, as far as the watchers know
   FrameNumber known = kNever;        ///< truth is final before this frame; see KnownOf()
@@ -214,6 +215,9 @@ struct Watch {
   InstanceId instance;
   int role = kNone;
   int other = kNone;  ///< in its other role, if it has two
+  /// Poses do not wake it before its entities have got so far, all their ways added; below 0 they
+  /// do.
+  float rests_until_m = -1;
 };
 
 /// What the truth of an instance is where it is not known yet, as far as that has been seen.
@@ -252,19 +256,15 @@ class RuleInstances {
 
   RuleInstance& operator[](InstanceId instance) { return instances_[instance]; }
   const RuleInstance& operator[](InstanceId instance) const { return instances_[instance]; }
-  /// An instance at rest is not woken by poses before its entities have got so far, all their ways
-  /// added; below 0 it is.
-  double RestsUntil_m(InstanceId instance) const {
-    return instance.index() < rests_until_m_.size() ? rests_until_m_[instance.index()] : kNoRest_m;
+  /// See Watch::rests_until_m. Rounded down: it is woken a little early.
+  void RestUntil_m(RuleInstance& instance, double ways_m) {
+    SetRest(instance, std::nextafter(static_cast<float>(ways_m), kNoRest_m));
+    instance.rests_apart = true;
   }
-  /// Rounded down: it is woken a little early.
-  void RestUntil_m(InstanceId instance, double ways_m) {
-    if (instance.index() >= rests_until_m_.size())
-      rests_until_m_.resize(instance.index() + 1, kNoRest_m);
-    rests_until_m_[instance.index()] = std::nextafter(static_cast<float>(ways_m), kNoRest_m);
-  }
-  void RestNoMore(InstanceId instance) {
-    if (instance.index() < rests_until_m_.size()) rests_until_m_[instance.index()] = kNoRest_m;
+  void RestNoMore(RuleInstance& instance) {
+    if (!instance.rests_apart) return;
+    SetRest(instance, kNoRest_m);
+    instance.rests_apart = false;
   }
   /// Numbers of instances are below this, free ones included.
   InstanceId end_id() const { return instances_.end_id(); }
@@ -318,6 +318,13 @@ class RuleInstances {
   }
   /// The instance's guard is false, and known to be.
   bool GuardRests(const RuleInstance& instance) const;
+  /// The guard never was true, nor may have been: it is bound, and woken, when that changes first.
+  bool LacksItsGuard(const RuleInstance& instance) const {
+    const Rule& rule = program_.rules[instance.rule];
+    return !instance.open && rule.guard != kNone && rule.form() != Form::kAny &&
+           rule.form() != Form::kCompose &&
+           instance.references[static_cast<std::size_t>(rule.guard)] == kNone;
+  }
 
   /// The truth of the instance is final before this frame.
   FrameNumber KnownOf(const RuleInstance& instance) const {
@@ -400,6 +407,7 @@ class RuleInstances {
   void LinkToGuard(InstanceId instance, Guard guard);
   void WatchEntities(RuleInstance& instance);
   void UnwatchEntities(const RuleInstance& instance);
+  void SetRest(const RuleInstance& instance, float rests_until_m);
   template <typename Which>
   static Kleene AnyPast(const RuleInstance& instance, const Which& which) {
     for (std::size_t i = instance.past.size(); i-- > 0;) {
@@ -412,8 +420,7 @@ class RuleInstances {
   const EntityTable& entity_table_;
   std::function<FrameNumber(InstanceId)> known_of_;
   StableBlocks<InstanceId, RuleInstance>
-      instances_;                     // an instance stays where it is when others are made
-  std::vector<float> rests_until_m_;  // up to the last one that rested; empty if none ever did
+      instances_;  // an instance stays where it is when others are made
   std::array<std::vector<InstanceId>, std::variant_size_v<FormState>> free_;  // by kind of state
   int free_count_ = 0;
   InstanceIndex<InstanceKey> index_;
