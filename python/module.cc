@@ -101,7 +101,8 @@ py::tuple FramesOf(const Episode& episode) {
   {
     const py::gil_scoped_release unlocked;
     failure = episode.EachFrame([&](const grammar::Frame& frame) {
-      for (const grammar::EntitySample& look : frame.entities) {
+      for (const grammar::EntitySample& seen : frame.entities) {
+        const grammar::EntitySample look = grammar::IsMeasured(seen) ? seen : grammar::NotTracked();
         poses.insert(poses.end(), look.p_WB_m.begin(), look.p_WB_m.end());
         poses.insert(poses.end(), {look.q_WB.w(), look.q_WB.x(), look.q_WB.y(), look.q_WB.z()});
         velocities.insert(velocities.end(), look.v_WB_m_per_s.begin(), look.v_WB_m_per_s.end());

@@ -82,6 +82,7 @@ struct EntitySample {
   Eigen::Vector3d v_WB_m_per_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d w_WB_rad_per_s = Eigen::Vector3d::Zero();
   bool asleep = false;
+  bool bridged = false;  ///< nothing was seen: the last look still counts
   /// Of a moving part of furniture: radians of a hinge, metres of a slide; and 0 closed .. 1 open.
   double joint_position = 0;
   double joint_fraction = 0;
@@ -94,14 +95,18 @@ struct EntitySample {
 // tests/grammar/engine/tracking_test.cc
 
 inline bool IsTracked(const EntitySample& look) { return !std::isnan(look.p_WB_m.x()); }
+/// What a grammar sees counts for a short time without it; what is written for others is this.
+inline bool IsMeasured(const EntitySample& look) { return IsTracked(look) && !look.bridged; }
 
 /// Of two numbers or none.
 inline bool SameNumber(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
-/// Whether no grammar can tell one look from the other: in all but `asleep` they are the same.
+/// Whether no grammar can tell one look from the other: in all but `asleep` and `bridged` they are
+/// the same.
 inline bool SameFacts(const EntitySample& a, const EntitySample& b) {
   // All are named, so that a new one does not compile before it is here.
-  const auto& [p_WB_m, q_WB, v_WB, w_WB, asleep, joint_position, joint_fraction, gazes_at] = a;
+  const auto& [p_WB_m, q_WB, v_WB, w_WB, asleep, bridged, joint_position, joint_fraction,
+               gazes_at] = a;
   if (!IsTracked(a) && !IsTracked(b)) {
     const auto same = [](const auto& x, const auto& y) {
       return std::equal(x.data(), x.data() + x.size(), y.data(), SameNumber);

@@ -153,8 +153,21 @@ def check_gaps(folder):
     assert resegmented(take) == resegmented(folder / "again.jsonl")
     said("episode", "export", folder / "again.jsonl", "--to", "jsonl", "-o", folder / "third.jsonl")
     assert (folder / "again.jsonl").read_bytes() == (folder / "third.jsonl").read_bytes()
-    said("episode", "export", take, "--to", "npz", "-o", folder / "gaps.npz")
-    assert np.isnan(np.load(folder / "gaps.npz")["position_m"][80, 1]).all()
+    assert "bridge_s" not in json.loads((folder / "again.jsonl").read_text(encoding="utf-8").splitlines()[0])
+    said("import", take, "-o", folder / "gaps.episodes")
+    lost = [["cup"] if tick == 0 or 30 <= tick < 36 or 60 <= tick < 90 else [] for tick in range(200)]  # also what is bridged
+    for source in (take, folder / "gaps.episodes"):
+        for form in ("jsonl", "csv", "npz", "mcap"):
+            made = folder / f"gaps.{form}"
+            said("episode", "export", source, "--to", form, "-o", made)
+            if form == "npz":
+                assert (np.isnan(np.load(made)["position_m"][:, 1]).all(1) == [*map(bool, lost)]).all()
+            if form != "jsonl":
+                assert "\nbridge_s: 0.1\n" in pathlib.Path(f"{made}.map.yaml").read_text(encoding="utf-8")
+                said("import", made, "--map", f"{made}.map.yaml", "-o", folder / "back.jsonl")
+                made = folder / "back.jsonl"
+            assert lost_in([json.loads(row) for row in open(made, encoding="utf-8")], ["cup"]) == lost, (source, form)
+            assert resegmented(made) == resegmented(take), (source, form)
 
 
 def check_not_tracked(folder):

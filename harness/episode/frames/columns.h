@@ -87,6 +87,8 @@ class CellWriter {
   void operator()(const Values&... values) {
     (Put(values), ...);
   }
+  /// In one cell, where older files have the first alone.
+  void Flags(bool first, bool second) { Put(first + 2 * second); }
 
  private:
   void Put(double value) { row_.push_back(std::bit_cast<Word>(value)); }
@@ -110,6 +112,11 @@ class CellReader {
   template <typename... Values>
   void operator()(Values&... values) {
     (Take(values), ...);
+  }
+  void Flags(bool& first, bool& second) {
+    const Word flags = Next();
+    first = (flags & 1) != 0;
+    second = (flags & 2) != 0;
   }
 
  private:

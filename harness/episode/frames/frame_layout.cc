@@ -59,8 +59,9 @@ constexpr std::size_t kSampleWidth = 17, kHandWidth = 5, kTouchWidth = 13, kSphe
 enum Table { kPlaced, kFrames, kSpheres, kTouches, kTables };
 
 void EachOfSample(auto& cells, auto& look) {
-  cells(look.p_WB_m, look.q_WB, look.v_WB_m_per_s, look.w_WB_rad_per_s, look.asleep,
-        look.joint_position, look.joint_fraction, look.gazes_at);
+  cells(look.p_WB_m, look.q_WB, look.v_WB_m_per_s, look.w_WB_rad_per_s);
+  cells.Flags(look.asleep, look.bridged);
+  cells(look.joint_position, look.joint_fraction, look.gazes_at);
 }
 
 void EachOfHand(auto& cells, auto& hand) { cells(hand.trigger, hand.style, hand.ahead_W); }

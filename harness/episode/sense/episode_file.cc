@@ -33,7 +33,8 @@ void AddClasses(const std::vector<std::string>& classes, Json& json) {
   json["fixed"] = *given == "Fixed";
   if (*given == "Jointed") json["jointed"] = true;
   if (*given == "Attached") json["attached"] = true;
-  if (*given == "Entity" || *given == "BodyPart") json["person"] = true;
+  for (const char* of_person : {"Entity", "Person", "BodyPart"})
+    if (*given == of_person) json["person"] = true;
   if (*given == "Grains") json["grains"] = true;
   if (given + 1 != classes.end() && *(given + 1) == "Abstract") json["abstract"] = *given;
 }
@@ -214,7 +215,7 @@ void GapTolerance::Fill(grammar::Tick tick, std::vector<grammar::EntitySample>& 
     if (is_tracked)
       entity.last = {tick, looks[i]};
     else if (const Seen* last = LastOf(i, tick))
-      looks[i] = last->look;
+      (looks[i] = last->look).bridged = true;
   }
   before_ = tick;
 }
@@ -265,6 +266,7 @@ EpisodeWriter::EpisodeWriter(std::ostream& out, const EpisodeHeader& header,
                              const WrittenFacts& facts)
     : out_(out),
       facts_(facts),
+      bridges_(header.bridge_s > 0),
       entity_table_(header.entity_table),
       shown_(header.entity_table.entities.size()) {
   Json entities = Json::object();
@@ -294,7 +296,11 @@ void EpisodeWriter::Write(const grammar::Frame& frame) {
   };
   for (std::size_t i = 0; i < frame.entities.size(); ++i) {
     const std::size_t before = line.size(), begin = begin_of(static_cast<int>(i));
-    AddSample(frame.entities[i], entity_table_, facts_, line);
+    const grammar::EntitySample& look = frame.entities[i];
+    if (look.bridged && bridges_)  // who reads it does the same
+      line += "null";
+    else
+      AddSample(look, entity_table_, facts_, line);
     const std::string_view text = std::string_view(line).substr(begin);
     if (text == shown_[i]) {
       line.resize(before);

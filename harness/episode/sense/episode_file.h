@@ -143,6 +143,7 @@ class EpisodeWriter {
  private:
   std::ostream& out_;
   const WrittenFacts facts_;
+  const bool bridges_;  ///< who reads it, what is not tracked for a short time
   grammar::EntityTable entity_table_;
   std::vector<std::string> shown_;  ///< per entity: its last line, as only changes are written
 };

@@ -204,9 +204,10 @@ class EpisodeReader {
         member.sensor_sets = m.sensor_sets;
         hands_.push_back(static_cast<int>(entity_table.entities.size()) - 1);
       } else {
-        member.classes = RootsOf(m);
-        member.classes.insert(member.classes.begin(), m.kinds.begin(), m.kinds.end());
+        member.classes = m.kinds;
         member.classes.insert(member.classes.begin(), m.class_name);
+        for (const std::string& root : RootsOf(m))
+          if (std::ranges::count(member.classes, root) == 0) member.classes.push_back(root);
       }
       CheckMember(entry, member.classes, errors);
     }
@@ -287,8 +288,7 @@ class EpisodeReader {
   static std::vector<std::string> RootsOf(const MemberEntry& m) {
     if (!m.abstract.empty()) return {m.abstract, "Abstract", "Entity"};
     if (m.grains) return {"Grains", "Entity"};
-    if (m.person && m.part_of) return {"BodyPart", "Entity"};
-    if (m.person) return {"Entity"};
+    if (m.person) return {m.part_of ? "BodyPart" : "Person", "Entity"};
     return {m.fixed      ? "Fixed"
             : m.jointed  ? "Jointed"
             : m.attached ? "Attached"

@@ -203,10 +203,7 @@ void Motion::LookAtAll() {
     for (std::size_t i = 0; i < frame.entities.size(); ++i) {
       const grammar::EntitySample& look = frame.entities[i];
       Seen& of = seen[i];
-      if (!grammar::IsTracked(look)) {
-        header.bridge_s = 0;  // short losses stand in the frames, and what is lost counts as it is
-        continue;
-      }
+      if (!grammar::IsMeasured(look)) continue;
       of.has_joint = of.has_joint || look.joint_position != 0 || look.joint_fraction != 0;
       if (of.looks++ == 0) of.first = of.shut = of.open = look;
       if (look.joint_fraction < of.shut.joint_fraction) of.shut = look;
@@ -218,7 +215,7 @@ void Motion::LookAtAll() {
       Seen& of = seen[static_cast<std::size_t>(hand.entity)];
       const grammar::EntitySample& look = frame.entities[static_cast<std::size_t>(hand.entity)];
       of.most_grip = std::max(of.most_grip, hand.trigger);
-      if (!of.ahead_B && grammar::IsTracked(look))
+      if (!of.ahead_B && grammar::IsMeasured(look))
         of.ahead_B = look.q_WB.conjugate() * hand.ahead_W;
     }
   });
@@ -252,7 +249,7 @@ void WriteCsv(const Motion& motion, std::ostream& out) {
       const grammar::EntitySample& look = frame.entities[i];
       const Eigen::Vector3d& p = look.p_WB_m;
       const Eigen::Quaterniond& q = look.q_WB;
-      const bool known = grammar::IsTracked(look);
+      const bool known = grammar::IsMeasured(look);
       const std::string pose = known ? fmt::format("{},{},{},{},{},{},{}", p.x(), p.y(), p.z(),
                                                    q.w(), q.x(), q.y(), q.z())
                                      : ",,,,,,";
@@ -381,7 +378,7 @@ void WriteNpz(const Motion& motion, std::ostream& out) {
   motion.EachFrame([&](const grammar::Frame& frame) {
     t.push_back(motion.Seconds(frame.tick));
     for (const grammar::EntitySample& look : frame.entities) {
-      const bool known = grammar::IsTracked(look);
+      const bool known = grammar::IsMeasured(look);
       for (int i = 0; i < 3; ++i) p.push_back(known ? look.p_WB_m[i] : kNone);
       for (const int i : {3, 0, 1, 2}) q.push_back(known ? look.q_WB.coeffs()[i] : kNone);
       joint.push_back(known ? look.joint_position : kNone);

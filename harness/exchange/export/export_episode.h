@@ -69,7 +69,7 @@ class Motion {
 
   /// What is known of an entity from all frames.
   struct Seen {
-    std::size_t looks = 0;  ///< frames in which it is tracked
+    std::size_t looks = 0;  ///< frames in which it is measured
     bool moves = false;
     bool has_joint = false;                  ///< by its class, or somewhere else than at 0
     grammar::EntitySample first;             ///< look

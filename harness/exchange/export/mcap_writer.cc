@@ -473,9 +473,9 @@ std::string WriteMcap(const Motion& motion, const std::string& name, std::ostrea
     values.clear();
     for (std::size_t i = 0; i < frame.entities.size(); ++i) {
       const grammar::EntitySample& look = frame.entities[i];
-      if (!stands[i] && grammar::IsTracked(look))
+      if (!stands[i] && grammar::IsMeasured(look))
         frames.push_back({&table.entities[i].name, look.p_WB_m, look.q_WB});
-      if (motion.seen[i].has_joint && grammar::IsTracked(look))
+      if (motion.seen[i].has_joint && grammar::IsMeasured(look))
         values.push_back({table.entities[i].name, look.joint_position});
     }
     for (const grammar::HandSample& hand : frame.hands)

@@ -46,8 +46,7 @@ class FrameMaker {
   void EachFrame(const episode::Recording::Look& look, std::int64_t step = 0) {
     for (auto* all : {&tracks, &openings})
       for (Track& track : *all) track.next = 0;
-    std::vector<grammar::EntitySample> before;
-    double before_s = 0;
+    std::vector last(tracks.size(), std::pair(0.0, grammar::NotTracked()));
     episode::EpisodeFrame frame{.tick = -step};
     for (const auto& [tick, t_s] : times) {
       if (tick - frame.tick < step) continue;
@@ -59,9 +58,13 @@ class FrameMaker {
         grammar::EntitySample& sample = frame.entities.emplace_back();
         sample.p_WB_m = pose.p;
         sample.q_WB = pose.q;
-        if (!before.empty() && !Found(tracks[i], passed) && grammar::IsTracked(before[i]))
-          SetVelocity(before[i], t_s - before_s, sample);
-        if (map_.lost != Lost::kHold && IsLost(tracks[i], t_s)) sample = grammar::NotTracked();
+        const auto& [last_s, before] = last[i];
+        const bool follows = !Found(tracks[i], passed) ||
+                             (map_.lost == Lost::kInRows && t_s - last_s <= map_.bridge_s + 1e-9);
+        if (follows && grammar::IsTracked(before)) SetVelocity(before, t_s - last_s, sample);
+        const bool is_lost = map_.lost != Lost::kHold && IsLost(tracks[i], t_s);
+        if (is_lost) sample = grammar::NotTracked();
+        if (!is_lost) last[i] = {t_s, sample};
         if (map_.entities[i].value.hand) {
           frame.hands.push_back(
               {.entity = static_cast<int>(i), .ahead_W = pose.q * AheadOf(map_.entities[i].value)});
@@ -69,8 +72,6 @@ class FrameMaker {
         }
       }
       SetOpenings(t_s, frame);
-      before = frame.entities;
-      before_s = t_s;
       look(frame);
     }
   }

@@ -115,9 +115,7 @@ void Episode::WriteFrames(const std::string& file) const {
   impl_->WithFrames([&](episode::Episode& episode) {
     AtomicFile out(file, Over::kAnything);  // what is replaced, a program decides
     if (!out.problem().empty()) Refuse(file, out.problem());
-    episode::EpisodeHeader header = episode.Header();
-    header.bridge_s = 0;  // what is bridged stands in the frames
-    episode::EpisodeWriter writer(out.stream(), header);
+    episode::EpisodeWriter writer(out.stream(), episode.Header());
     const auto end = episode.EachFrame([&](const grammar::Frame& frame) { writer.Write(frame); });
     writer.Finish(end.tick);
     if (const std::string problem = out.Commit(); !problem.empty()) Refuse(file, problem);

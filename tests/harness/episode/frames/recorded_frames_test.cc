@@ -32,7 +32,8 @@ struct SomeRecording {
       frame.entities[0].q_WB =
           Eigen::Quaterniond(any(random), any(random), any(random), any(random)).normalized();
       frame.entities[0].v_WB_m_per_s = point();
-      frame.entities[1].asleep = true;
+      frame.entities[1].asleep = i % 2 == 0;
+      frame.entities[1].bridged = i % 3 == 0;
       frame.entities[1].joint_fraction = 0.25;
       frame.entities[2].gazes_at = static_cast<int>(i % 3) - 1;
       frame.hands = {{.entity = 0,
@@ -59,6 +60,7 @@ void ExpectSame(const EpisodeFrame& a, const EpisodeFrame& b) {
     EXPECT_EQ(a.entities[i].q_WB.coeffs(), b.entities[i].q_WB.coeffs());
     EXPECT_EQ(a.entities[i].v_WB_m_per_s, b.entities[i].v_WB_m_per_s);
     EXPECT_EQ(a.entities[i].asleep, b.entities[i].asleep);
+    EXPECT_EQ(a.entities[i].bridged, b.entities[i].bridged);
     EXPECT_EQ(a.entities[i].joint_fraction, b.entities[i].joint_fraction);
     EXPECT_EQ(a.entities[i].gazes_at, b.entities[i].gazes_at);
   }

@@ -121,6 +121,7 @@ TEST(EpisodeFile, ClassesAndPartsOfAreReadAsTheyWereWritten) {
       R"("drawer": {"class": "Drawer", "kinds": ["Container"], "jointed": true, "part_of": "chest", "size_m": [0.4, 0.4, 0.1]}, )"
       R"("chest": {"fixed": true, "size_m": [0.5, 0.5, 1]}, )"
       R"("anna": {"class": "Person", "person": true, "size_m": [0.2, 0.2, 0.2]}, )"
+      R"("bob": {"person": true, "size_m": [0.2, 0.2, 0.2]}, )"
       R"("anna_neck": {"class": "Neck", "person": true, "part_of": "anna", "size_m": [0.1, 0.1, 0.1]}, )"
       R"("hand": {"hand": true, "part_of": "anna", "size_m": [0.1, 0.1, 0.03]}}})"
       "\n{\"tick\": 0}\n");
@@ -134,7 +135,7 @@ TEST(EpisodeFile, ClassesAndPartsOfAreReadAsTheyWereWritten) {
   using Classes = std::vector<std::string>;
   for (const auto& one : {read, again}) {
     const auto& entities = one->header.entity_table.entities;
-    ASSERT_EQ(entities.size(), 6u);
+    ASSERT_EQ(entities.size(), 7u);
     std::map<std::string, const grammar::EntityInfo*> named;
     for (const auto& entity : entities) named[entity.name] = &entity;
     EXPECT_EQ(named["mug"]->classes,
@@ -143,6 +144,7 @@ TEST(EpisodeFile, ClassesAndPartsOfAreReadAsTheyWereWritten) {
               (Classes{"Drawer", "Container", "Jointed", "Thing", "Entity"}));
     EXPECT_EQ(named["chest"]->classes, (Classes{"Object", "Fixed", "Thing", "Entity"}));
     EXPECT_EQ(named["anna"]->classes, (Classes{"Person", "Entity"}));
+    EXPECT_EQ(named["bob"]->classes, (Classes{"Object", "Person", "Entity"})) << "by its key";
     EXPECT_EQ(named["anna_neck"]->classes, (Classes{"Neck", "BodyPart", "Entity"}));
     EXPECT_EQ(named["hand"]->classes, (Classes{"Hand", "Entity"}));
     EXPECT_EQ(&entities[static_cast<std::size_t>(named["drawer"]->part_of)], named["chest"]);
