@@ -203,7 +203,20 @@ TEST_F(Labelled, EpisodesAndScenariosOfASuiteTakeLabelsToo) {
   const Said of_lines =
       Prehend({"grammar", "sweep", Take("a.jsonl"), "--over", "reach_radius=1cm..3cm:2"});
   EXPECT_EQ(of_lines.exit_code, 2);
-  EXPECT_TRUE(Has(of_lines.err, "score it against labels by people: --truth")) << of_lines.err;
+  EXPECT_TRUE(Has(of_lines.err, "name its golden, or labels by people: --truth")) << of_lines.err;
+}
+
+TEST_F(Labelled, WhatASweepWouldDropInSilenceIsRefused) {
+  const std::string take = Take("a.jsonl");
+  const auto refused = [&](std::vector<std::string> words, const std::string& why) {
+    words.insert(words.begin(), {"grammar", "sweep", take});
+    const Said said = Prehend(words);
+    EXPECT_EQ(said.exit_code, 2) << said.out;
+    EXPECT_TRUE(Has(said.err, why)) << said.err;
+  };
+  refused({"--over", "reach_radius=1cm..3cm:2", "--set", "reach_radius=2cm"},
+          "--over: reach_radius is given by --set, too");
+  refused({"--over", "reach_radius=1cm..1cm:2"}, "goes nowhere: both ends are the same");
 }
 
 TEST_F(Labelled, MarginsNameWhatIsAtAnEdge) {
@@ -213,7 +226,7 @@ TEST_F(Labelled, MarginsNameWhatIsAtAnEdge) {
   ASSERT_EQ(said.exit_code, 0) << said.err;
   EXPECT_TRUE(Has(said.out, "touch_back")) << said.out;
   EXPECT_TRUE(Has(said.out, "warning: not among the best")) << said.out;
-  EXPECT_TRUE(Has(said.out, "without any effect on these recordings: ")) << said.out;
+  EXPECT_TRUE(Has(said.out, "without any effect on the scores: ")) << said.out;
   EXPECT_TRUE(ReadFile(Path("margins.csv")).starts_with("parameter,value,f1,from,to"));
 }
 

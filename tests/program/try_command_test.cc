@@ -68,6 +68,9 @@ TEST_F(TryCommand, ADrawingThatExpectsNothingShowsWhatThereIs) {
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_NE(said.out.find("  found  tap(hand, drum)             |.[=.|\n"), std::string::npos)
       << said.out;
+  EXPECT_TRUE(said.out.ends_with("\n0 of 0 drawings agree\n")) << "it claims nothing" << said.out;
+  const Said json = Prehend({"grammar", "try", grammar, drawing, "--json"});
+  EXPECT_EQ(nlohmann::json::parse(json.out)["drawings"][0]["expects_nothing"], true);
 }
 
 TEST_F(TryCommand, MistakesHaveTheirPlaceAndExitCodeTwo) {

@@ -106,8 +106,8 @@ ExitCode ImportLines(const std::string& file, const ParsedOptions& options,
   OnceEach warnings(context.err);
   const ExitCode written = WriteRecording(*recording, output, file, grammar, context, warnings);
   if (written != ExitCode::kAgrees) return written;
-  context.out << fmt::format("{}: {}, {} frames\n", output, recording->header.episode,
-                             recording->frames.size());
+  context.out << fmt::format("{}: {}, {}\n", output, recording->header.episode,
+                             grammar::CountOf(recording->frames.size(), "frame"));
   return exit_code;
 }
 

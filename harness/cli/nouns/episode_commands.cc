@@ -120,7 +120,8 @@ ExitCode RunMerge(const ParsedOptions& options, const CommandContext& context) {
   if (!lock) return Refuse(context, lock.error());
   const auto merged = episode::MergeEpisodes(files, output);
   if (!merged) return Complain(context, merged.error());
-  context.out << fmt::format("{}: {} episodes of {} files", output, merged->episodes, files.size());
+  context.out << fmt::format("{}: {} of {}", output, grammar::CountOf(merged->episodes, "episode"),
+                             grammar::CountOf(files.size(), "file"));
   if (merged->twice > 0) context.out << fmt::format("; {} were there twice", merged->twice);
   context.out << "\n" << std::flush;
   context.err << merged->notes << merged->missing;
@@ -339,7 +340,8 @@ ExitCode RunExport(const ParsedOptions& options, const CommandContext& context) 
   ExitCode worst = ExitCode::kAgrees;
   for (const exchange::Exported& file : *files) {
     context.err << file.warnings;
-    context.out << fmt::format("{}: {} frames, {} events\n", file.file, file.frames, file.events);
+    context.out << fmt::format("{}: {}, {}\n", file.file, grammar::CountOf(file.frames, "frame"),
+                               grammar::CountOf(file.events, "event"));
     if (!file.failure.empty()) worst = Complain(context, ExitCode::kFailure, file.failure);
   }
   return worst;
@@ -392,9 +394,10 @@ ExitCode RunKnowledge(const ParsedOptions& options, const CommandContext& contex
                                        .owl = asked("owl"),
                                        .neem = asked("neem")});
   if (!written) return Complain(context, written.error());
-  context.out << fmt::format("{}: {} episodes of {} tasks, {} events, {} statements\n", folder,
-                             written->episodes, written->tasks, written->events,
-                             written->statements);
+  context.out << fmt::format(
+      "{}: {} of {}, {}, {}\n", folder, grammar::CountOf(written->episodes, "episode"),
+      grammar::CountOf(written->tasks, "task"), grammar::CountOf(written->events, "event"),
+      grammar::CountOf(written->statements, "statement"));
   return ExitCode::kAgrees;
 }
 

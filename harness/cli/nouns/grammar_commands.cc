@@ -374,6 +374,8 @@ ExitCode RunTry(const ParsedOptions& options, const CommandContext& context) {
     tried.found = Sorted(DrawWatched(*compiled.program, tried.drawn, watched.timeline));
   }
   const auto differ = std::ranges::count_if(all, [](const Tried& one) { return !one.Agrees(); });
+  const auto expect =
+      std::ranges::count_if(all, [](const Tried& one) { return one.drawn.has_expected; });
   if (options.Has("--json")) {
     nlohmann::ordered_json drawings = nlohmann::ordered_json::array();
     for (const Tried& tried : all) {
@@ -381,6 +383,7 @@ ExitCode RunTry(const ParsedOptions& options, const CommandContext& context) {
                           {"line", tried.drawn.line},
                           {"title", tried.drawn.title},
                           {"agrees", tried.Agrees()},
+                          {"expects_nothing", !tried.drawn.has_expected},
                           {"wanted", ToJson(tried.wanted)},
                           {"found", ToJson(tried.found)}});
     }
@@ -390,8 +393,7 @@ ExitCode RunTry(const ParsedOptions& options, const CommandContext& context) {
                 << "\n";
   } else {
     for (const Tried& tried : all) Print(tried, context.out);
-    context.out << fmt::format("{} of {} drawings agree\n",
-                               static_cast<std::ptrdiff_t>(all.size()) - differ, all.size());
+    context.out << fmt::format("{} of {} drawings agree\n", expect - differ, expect);
   }
   return differ == 0 ? ExitCode::kAgrees : ExitCode::kDiffers;
 }
@@ -468,8 +470,9 @@ ExitCode RunTracks(const ParsedOptions& options, const CommandContext& context) 
   if (file) {
     const std::string problem = file->Commit();
     if (!problem.empty()) return Complain(context, ExitCode::kFailure, "--output: " + problem);
-    context.out << fmt::format("{}: {} tracks, {} frames\n", output, tracks.tracks.size(),
-                               tracks.ticks.size());
+    context.out << fmt::format("{}: {}, {}\n", output,
+                               grammar::CountOf(tracks.tracks.size(), "track"),
+                               grammar::CountOf(tracks.ticks.size(), "frame"));
   }
   return watched.failure.empty() ? ExitCode::kAgrees
                                  : Complain(context, ExitCode::kFailure, watched.failure);

@@ -102,12 +102,15 @@ ExitCode RunMargins(const ParsedOptions& options, const CommandContext& context)
   auto request = RequestFrom(options, context);
   if (!request) return ExitCode::kBadInput;
   PREHEND_TRY(const auto takes, TakesFrom(options, *request, context));
+  const std::string output = options.Text("--output");
+  if (show::WhyNoDrawingFile(output).empty())
+    return Refuse(context, fmt::format("--output: found '{}', wanted a file of CSV", output));
   const double within = options.NumberOr("--within", kDefaultMargin_percent) / 100;
   std::string problem;
   // After each parameter, so that it is there if somebody ends it.
   const auto write = [&](const measure::Margins& margins) {
     if (options.Has("--output") && !margins.sweep.IsRefused(*request))
-      problem = WriteTextFile(options.Text("--output"), MarginsCsv(margins));
+      problem = WriteTextFile(output, MarginsCsv(margins));
   };
   const auto margins = WithProgress(*request, takes.size(), context, [&] {
     return measure::FindMargins(takes, *request, within, options.All("--over"), write);

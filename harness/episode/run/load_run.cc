@@ -206,8 +206,10 @@ namespace fs = std::filesystem;
 
 std::string GrammarFile(const std::string& root, const std::string& name_or_path,
                         std::vector<std::string>* tried) {
+  std::error_code error;
   const bool is_path =
-      name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".grammar");
+      name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".grammar") ||
+      (name_or_path.find('.') != std::string::npos && fs::is_regular_file(name_or_path, error));
   if (is_path && tried) tried->push_back(name_or_path);
   return is_path ? name_or_path : GrammarPath(root, name_or_path, tried);
 }

@@ -95,8 +95,8 @@ std::vector<std::string> UnknownOfBodies(const ImportMap& map, const PoseFile& f
 
 std::string ImportTable(const Imported& imported) {
   const episode::Recording& episode = imported.episode;
-  std::string table = fmt::format("{}: {} frames, {:.3f} s\n", episode.header.episode,
-                                  imported.frames, imported.duration_s);
+  std::string table = fmt::format("{}: {}, {:.3f} s\n", episode.header.episode,
+                                  grammar::CountOf(imported.frames, "frame"), imported.duration_s);
   std::size_t width = 16;
   for (const EntityReport& one : imported.entities) width = std::max(width, one.from.size());
   table += fmt::format("{:<16} {:<{}} {:>7} {:>7} {:>8} {:>9} {:>5} {:>7}  {:<14} {:<14} {}\n",

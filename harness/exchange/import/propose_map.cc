@@ -392,7 +392,8 @@ class MapProposer {
       if (!warning.starts_with("size_m is unknown") && !warning.ends_with("does not mention") &&
           !(has_markers_ && warning.find(" rest") != warning.npos))  // each alone rests on nothing
         imported_.push_back(warning);
-    summary_ = fmt::format("{:.1f} s, {} frames", imported->duration_s, imported->frames);
+    summary_ = fmt::format("{:.1f} s, {}", imported->duration_s,
+                           grammar::CountOf(imported->frames, "frame"));
   }
 
   Result<MapFile> Read() const {

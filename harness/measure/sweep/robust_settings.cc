@@ -406,7 +406,7 @@ std::string MarginsText(const Margins& margins, double within) {
   if (std::ranges::all_of(margins.margins, [](const Margin& margin) { return margin.best == 0; }))
     return text + "every score is 0: no event is right with any value of any parameter\n";
   if (!idle.empty())
-    text += fmt::format("without any effect on these recordings: {}\n", fmt::join(idle, ", "));
+    text += fmt::format("without any effect on the scores: {}\n", fmt::join(idle, ", "));
   if (!margins.without.empty())
     text += fmt::format("not tried, because they are 0: {}\n", fmt::join(margins.without, ", "));
   return text;

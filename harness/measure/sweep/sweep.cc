@@ -109,7 +109,11 @@ Result<Programs> CompileAll(const SweepRequest& request, const episode::EpisodeN
 std::string WhyNoTruth(const episode::Episode& episode, Truth truth) {
   if (truth == Truth::kRecorded)
     return episode::Lacks(episode.name(), episode::Need::kRecordedEvents);
-  return truth == Truth::kLabels ? "" : episode::Lacks(episode.name(), episode::Need::kGroundTruth);
+  if (truth == Truth::kLabels) return "";
+  const std::string why = episode::Lacks(episode.name(), episode::Need::kGroundTruth);
+  if (why.empty() || truth != Truth::kGolden) return why;
+  return episode.name().scenario +
+         " is a recording: name its golden, or labels by people: --truth FILE (docs/labels.md)";
 }
 
 /// The true events, only those that the grammar prints; or why there are none.
@@ -235,6 +239,10 @@ std::optional<Axis> ParseAxis(const std::string& text, std::string& problem) {
              to = Quantity(std::string_view(text).substr(dots + 2, colon - dots - 2));
   const int count = NumberFrom<int>(std::string_view(text).substr(colon + 1)).value_or(0);
   if (!from || !to || count < 2) return std::nullopt;
+  if (*from == *to) {
+    problem = fmt::format("'{}' goes nowhere: both ends are the same", text);
+    return std::nullopt;
+  }
   if (from->second != to->second) {
     problem = fmt::format("'{}' goes from '{}' to '{}': both ends need the same unit", text,
                           from->second, to->second);
@@ -276,6 +284,9 @@ std::string SetAxes(const std::vector<std::string>& texts, SweepRequest& request
     settings *= axis.values.size();
     if (std::ranges::count(request.axes, axis.parameter, &Axis::parameter) > 0)
       return "--over: " + axis.parameter + " is given twice";
+    for (const std::string& setting : request.settings)
+      if (setting.starts_with(axis.parameter + "="))
+        return "--over: " + axis.parameter + " is given by --set, too";
     if (settings > kMostSettings)
       return fmt::format("--over: more than {} settings", kMostSettings);
     request.axes.push_back(std::move(axis));
