@@ -40,7 +40,7 @@ class Interrupted : public testing::Test {
     const pid_t process = fork();
     if (process == 0) {
       if (chdir(PREHEND_SOURCE_DIR) != 0) _exit(99);
-      if (ignores_it) std::signal(signal, SIG_IGN);
+      std::signal(signal, ignores_it ? SIG_IGN : SIG_DFL);  // whatever our own shell said
       dup2(open((folder_ / "out").c_str(), O_CREAT | O_WRONLY, 0600), STDOUT_FILENO);
       dup2(open((folder_ / "err").c_str(), O_CREAT | O_WRONLY, 0600), STDERR_FILENO);
       std::vector<char*> arguments;
