@@ -202,7 +202,7 @@ def _many(one):
 class _Truth(contextlib.ExitStack):
     """Labels as files, and what is said of them in the words of a call: a table is no file, and there are no options."""
 
-    _WORDS = {"--map labels.yaml": "map='labels.yaml'", "people: --truth (": "people: truth=.. (",
+    _WORDS = {"--map labels.yaml": "map='labels.yaml'", "golden: --truth FILE (": "golden: truth=.. (",
               "--skip-bad-labels leaves out what": "leave out what",
               "rows: {COLUMN: NAME} in a file of takes tells them apart": "score the rows of one alone",
               "; or rows: {": ", in the file map=; or truth=table[table[COLUMN] == VALUE]; rows: {"}

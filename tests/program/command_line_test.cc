@@ -176,7 +176,7 @@ TEST_F(CommandLine, ARecordingIsNotAScenario) {
   EXPECT_EQ(scored.err,
             "prehend: " + file +
                 " was not simulated, so its physical truth is not known; score it against labels "
-                "by people: --truth (docs/labels.md)\n");
+                "by people, or its golden: --truth FILE (docs/labels.md)\n");
 }
 
 TEST_F(CommandLine, PrintedCommandsHaveTheNameThatTheProgramWasCalledBy) {

@@ -158,7 +158,7 @@ def check_gaps(folder):
     lost = [["cup"] if tick == 0 or 30 <= tick < 36 or 60 <= tick < 90 else [] for tick in range(200)]  # also what is bridged
     for source in (take, folder / "gaps.episodes"):
         for form in ("jsonl", "csv", "npz", "mcap"):
-            made = folder / f"gaps.{form}"
+            made = folder / f"copy.{form}"
             said("episode", "export", source, "--to", form, "-o", made)
             if form == "npz":
                 assert (np.isnan(np.load(made)["position_m"][:, 1]).all(1) == [*map(bool, lost)]).all()

@@ -203,7 +203,7 @@ TEST_F(Labelled, EpisodesAndScenariosOfASuiteTakeLabelsToo) {
   const Said of_lines =
       Prehend({"grammar", "sweep", Take("a.jsonl"), "--over", "reach_radius=1cm..3cm:2"});
   EXPECT_EQ(of_lines.exit_code, 2);
-  EXPECT_TRUE(Has(of_lines.err, "name its golden, or labels by people: --truth")) << of_lines.err;
+  EXPECT_TRUE(Has(of_lines.err, "labels by people, or its golden: --truth")) << of_lines.err;
 }
 
 TEST_F(Labelled, WhatASweepWouldDropInSilenceIsRefused) {

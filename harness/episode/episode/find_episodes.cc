@@ -311,7 +311,7 @@ std::string Lacks(const EpisodeName& episode, Need need) {
       if (!is_recording) return "";
       return episode.scenario +
              " was not simulated, so its physical truth is not known; score it against labels by "
-             "people: --truth (docs/labels.md)";
+             "people, or its golden: --truth FILE (docs/labels.md)";
     case Need::kRecordedEvents:
       if (episode.number) return "";
       return fmt::format("{} has no events that were recorded with it; '{}' keeps them", file,

@@ -109,11 +109,7 @@ Result<Programs> CompileAll(const SweepRequest& request, const episode::EpisodeN
 std::string WhyNoTruth(const episode::Episode& episode, Truth truth) {
   if (truth == Truth::kRecorded)
     return episode::Lacks(episode.name(), episode::Need::kRecordedEvents);
-  if (truth == Truth::kLabels) return "";
-  const std::string why = episode::Lacks(episode.name(), episode::Need::kGroundTruth);
-  if (why.empty() || truth != Truth::kGolden) return why;
-  return episode.name().scenario +
-         " is a recording: name its golden, or labels by people: --truth FILE (docs/labels.md)";
+  return truth == Truth::kLabels ? "" : episode::Lacks(episode.name(), episode::Need::kGroundTruth);
 }
 
 /// The true events, only those that the grammar prints; or why there are none.
