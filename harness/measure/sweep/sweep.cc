@@ -235,10 +235,6 @@ std::optional<Axis> ParseAxis(const std::string& text, std::string& problem) {
              to = Quantity(std::string_view(text).substr(dots + 2, colon - dots - 2));
   const int count = NumberFrom<int>(std::string_view(text).substr(colon + 1)).value_or(0);
   if (!from || !to || count < 2) return std::nullopt;
-  if (*from == *to) {
-    problem = fmt::format("'{}' goes nowhere: both ends are the same", text);
-    return std::nullopt;
-  }
   if (from->second != to->second) {
     problem = fmt::format("'{}' goes from '{}' to '{}': both ends need the same unit", text,
                           from->second, to->second);
