@@ -207,15 +207,10 @@ TEST_F(Labelled, EpisodesAndScenariosOfASuiteTakeLabelsToo) {
 }
 
 TEST_F(Labelled, WhatASweepWouldDropInSilenceIsRefused) {
-  const std::string take = Take("a.jsonl");
-  const auto refused = [&](std::vector<std::string> words, const std::string& why) {
-    words.insert(words.begin(), {"grammar", "sweep", take});
-    const Said said = Prehend(words);
-    EXPECT_EQ(said.exit_code, 2) << said.out;
-    EXPECT_TRUE(Has(said.err, why)) << said.err;
-  };
-  refused({"--over", "reach_radius=1cm..3cm:2", "--set", "reach_radius=2cm"},
-          "--over: reach_radius is given by --set, too");
+  const Said said = Prehend({"grammar", "sweep", Take("a.jsonl"), "--over",
+                             "reach_radius=1cm..3cm:2", "--set", "reach_radius=2cm"});
+  EXPECT_EQ(said.exit_code, 2) << said.out;
+  EXPECT_TRUE(Has(said.err, "--over: reach_radius is given by --set, too")) << said.err;
 }
 
 TEST_F(Labelled, MarginsNameWhatIsAtAnEdge) {
