@@ -222,7 +222,7 @@ CALLS = {
     "margins of a number": (lambda: margins(3), F, "found a int"),
     "margins below zero": (lambda: margins(episode(), within=-1), ANY, "within: found -1, wanted 0 to 1"),
     "margins over a parameter of nobody": (lambda: margins(episode(), "recorded", over=["nix"]), ANY, "^over: error: the grammar has no parameter 'nix'"),
-    "margins against what is nowhere": (lambda: margins(episode(), "golden", over=["hold_way"]), ANY, r"^0: 0 was not simulated.*labels by people: truth=\.\. \("),
+    "margins against what is nowhere": (lambda: margins(episode(), "golden", over=["hold_way"]), ANY, r"^0: 0 was not simulated.*labels by people, or its golden: truth=\.\. \("),
     "margins of nothing": (lambda: margins([], []), ANY, "^no file is named"),
     "a number to open": (lambda: prehend.open(3), E, "found a int, wanted a path"),
     "a recording of another kind": (lambda: episode().write("/tmp/x.csv"), E, r"'/tmp/x.csv', wanted NAME\.jsonl"),
