@@ -33,8 +33,7 @@ void AddClasses(const std::vector<std::string>& classes, Json& json) {
   json["fixed"] = *given == "Fixed";
   if (*given == "Jointed") json["jointed"] = true;
   if (*given == "Attached") json["attached"] = true;
-  for (const char* of_person : {"Entity", "Person", "BodyPart"})
-    if (*given == of_person) json["person"] = true;
+  if (*given == "Entity" || *given == "Person" || *given == "BodyPart") json["person"] = true;
   if (*given == "Grains") json["grains"] = true;
   if (given + 1 != classes.end() && *(given + 1) == "Abstract") json["abstract"] = *given;
 }
